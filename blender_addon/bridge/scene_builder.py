@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Feeds a snapshot directory to the library, item by item (standard library only)."""
+
+import ctypes as c
+
+from . import abi
+from .library import BakeError, check
+from .snapshot_io import SnapshotError
+
+
+class SceneBuilder:
+    """Builds one ajar_scene. release() frees it; a job that runs keeps its own reference."""
+
+    def __init__(self, library, reader):
+        self.library, self.reader, self.data = library, reader, reader.data
+        self.scene = abi.Handle()
+        check(library, library.ajar_scene_create(_text(self.data.get("name", "")), c.byref(self.scene)))
+
+    def build(self, cancelled=lambda: False):
+        """Adds everything and commits; False if cancelled() turned true on the way.
+
+        Raises BakeError with the culprit's name, also for a malformed snapshot.
+        """
+        steps = (("pages", self._page), ("textures", self._texture), ("materials", self._material),
+                 ("meshes", self._mesh), ("instances", self._instance), ("lights", self._light))
+        for key, add in steps:
+            for item in self.data.get(key, ()):
+                if cancelled():
+                    return False
+                self._guarded(add, item)
+        self._guarded(self._sky, self.data.get("sky") or {"type": "none"})
+        check(self.library, self.library.ajar_scene_commit(self.scene))
+        return True
+
+    def release(self):
+        """Frees the scene."""
+        self.library.ajar_scene_release(c.byref(self.scene))
+
+    def _guarded(self, add, item):
+        try:
+            add(item)
+        except (SnapshotError, KeyError, TypeError, ValueError) as error:
+            text = f"missing {error}" if isinstance(error, KeyError) else str(error)
+            raise BakeError(abi.ERROR_INPUT, f"bad snapshot: {text}", item.get("name", "")) from error
+
+    def _desc(self, kind, item):
+        desc = abi.STRUCTS[f"ajar_{kind}_desc"]()
+        getattr(self.library, f"ajar_{kind}_desc_init")(c.byref(desc))
+        if hasattr(desc, "name"):
+            desc.name = _text(item.get("name", ""))
+        return desc
+
+    def _add(self, kind, desc):
+        identifier = c.c_uint32()
+        function = getattr(self.library, f"ajar_scene_add_{kind}")
+        check(self.library, function(self.scene, c.byref(desc), c.byref(identifier)))
+
+    def _page(self, item):
+        identifier = c.c_uint32()
+        check(self.library, self.library.ajar_scene_add_page(
+            self.scene, item["width"], item["height"], c.byref(identifier)))
+
+    def _texture(self, item):
+        desc = self._desc("texture", item)
+        desc.width, desc.height = item["width"], item["height"]
+        desc.texel, desc.color = abi.TEXEL[item["texel"]], abi.COLOR[item["color"]]
+        desc.extend, desc.nearest = abi.EXTEND[item["extend"]], int(item.get("nearest", False))
+        count = item["width"] * item["height"] * 4
+        desc.texels = c.cast(self.reader.pointer(item["texels"], item["texel"], count), c.c_void_p)
+        desc.texel_bytes = count * (1 if item["texel"] == "u8" else 4)
+        self._add("texture", desc)
+
+    def _material(self, item):
+        desc = self._desc("material", item)
+        closures = item["closures"]
+        array = (abi.Closure * max(1, len(closures)))()
+        for closure, values in zip(array, closures):
+            self._closure(closure, values)
+        desc.closures, desc.closure_count = array, len(closures)
+        desc.one_sided = int(item.get("one_sided", False))
+        self._add("material", desc)
+
+    def _closure(self, closure, values):
+        self.library.ajar_closure_init(c.byref(closure))
+        closure.type = abi.CLOSURE[values["type"]]
+        for key in ("weight_a", "weight_b", "color", "strength", "metallic", "roughness"):
+            if key in values:
+                self._input(getattr(closure, key), values[key])
+        closure.specular = values.get("specular", closure.specular)
+
+    def _input(self, target, values):
+        self.library.ajar_input_init(c.byref(target))
+        if "value" in values:
+            target.value[:] = values["value"]
+        for key in ("texture", "color_layer"):
+            if values.get(key) is not None:
+                setattr(target, key, values[key])
+        target.uv_layer = values.get("uv_layer") or 0
+        target.channel = abi.CHANNEL[values.get("channel", "rgb")]
+        target.invert = int(values.get("invert", False))
+        if "uv_transform" in values:
+            target.uv_transform[:] = values["uv_transform"]
+
+    def _mesh(self, item):
+        desc = self._desc("mesh", item)
+        vertices, corners = item["vertex_count"], 3 * item["triangle_count"]
+        desc.vertex_count, desc.triangle_count = vertices, item["triangle_count"]
+        pointer = self.reader.pointer
+        desc.positions = pointer(item["positions"], "f32", 3 * vertices)
+        desc.corner_vertex = pointer(item["corner_vertex"], "u32", corners)
+        desc.corner_normals = pointer(item.get("corner_normals"), "f32", 3 * corners)
+        desc.triangle_slot = pointer(item.get("triangle_slot"), "u32", item["triangle_count"])
+        for key, width in (("uv_layers", 2), ("color_layers", 4)):
+            layers = item.get(key) or []
+            array = (abi.floats * max(1, len(layers)))(
+                *(pointer(layer, "f32", width * corners) for layer in layers))
+            setattr(desc, key, array)
+            setattr(desc, key[:-1] + "_count", len(layers))
+        self._add("mesh", desc)
+
+    def _instance(self, item):
+        desc = self._desc("instance", item)
+        desc.mesh = item["mesh"]
+        desc.transform[:] = item["transform"]
+        materials = item["materials"]
+        desc.materials = (c.c_uint32 * max(1, len(materials)))(*materials)
+        desc.material_count = len(materials)
+        desc.surface = abi.SURFACE[item["surface"]]
+        desc.visibility = sum(abi.VISIBLE[v] for v in item.get("visibility", abi.VISIBLE))
+        desc.lightmap_layer = _id(item.get("lightmap_layer"))
+        desc.page = _id(item.get("page"))
+        desc.uv_scale[:] = item.get("uv_scale", (1, 1))
+        desc.uv_offset[:] = item.get("uv_offset", (0, 0))
+        self._add("instance", desc)
+
+    def _light(self, item):
+        desc = self._desc("light", item)
+        desc.type, desc.role = abi.LIGHT[item["type"]], abi.ROLE[item["role"]]
+        desc.transform[:] = item["transform"]
+        desc.color[:] = item["color"]
+        for key in ("energy", "radius", "spot_angle", "spot_blend", "sun_angle",
+                    "size_x", "size_y", "spread"):
+            if key in item:
+                setattr(desc, key, item[key])
+        desc.casts_shadow = int(item.get("casts_shadow", True))
+        self._add("light", desc)
+
+    def _sky(self, item):
+        desc = self._desc("sky", item)
+        desc.type = abi.SKY[item["type"]]
+        desc.color[:] = item.get("color", (1, 1, 1))
+        desc.texture = _id(item.get("texture"))
+        check(self.library, self.library.ajar_scene_set_sky(self.scene, c.byref(desc)))
+
+
+def fill_settings(library, values, kind="settings"):
+    """ajar_settings (or kind 'layout_settings') with defaults, overridden by values by name."""
+    settings = abi.STRUCTS[f"ajar_{kind}"]()
+    getattr(library, f"ajar_{kind}_init")(c.byref(settings))
+    for key, value in values.items():
+        if key == "struct_size" or not hasattr(settings, key):
+            raise BakeError(abi.ERROR_ARGUMENT, f"unknown setting {key}", "settings")
+        try:
+            setattr(settings, key, int(value) if isinstance(value, bool) else value)
+        except TypeError as error:
+            raise BakeError(abi.ERROR_ARGUMENT, f"{key}: {error}", "settings") from error
+    return settings
+
+
+def _id(value):
+    return abi.NONE if value is None else value
+
+
+def _text(value):
+    return str(value).encode("utf-8", "replace").replace(b"\0", b"?")

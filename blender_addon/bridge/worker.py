@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Worker process: runs the engine apart from Blender (standard library only).
+
+    python3 worker.py layout DIR
+    python3 worker.py bake DIR --package OUT_DIR --report REPORT.json
+
+Writes one JSON event per line to stdout (progress, warning, error, cancelled, done). A line
+"cancel" on stdin, a closed stdin or SIGTERM cancels. Exit codes: 0 done, 1 error, 2 cancelled.
+"""
+
+import argparse
+import ctypes
+import faulthandler
+import json
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+
+if not __package__:  # run as a file: its siblings are the package "bridge"
+    sys.path[0] = str(Path(__file__).resolve().parent.parent)
+    __package__ = "bridge"
+    import bridge  # noqa: F401
+
+from . import abi
+from .layout_run import run_layout
+from .library import BakeError, check, decode, load_library, read_warnings
+from .scene_builder import SceneBuilder, fill_settings
+from .snapshot_io import Reader, SnapshotError, write_text_whole
+
+POLL_SECONDS = 0.1
+DONE, FAILED, CANCELLED = 0, 1, 2
+
+
+class Host:
+    """The other end of the pipes: takes events, asks to cancel."""
+
+    def __init__(self):
+        self.cancel = threading.Event()
+        self._out = sys.stdout
+
+    def listen(self):
+        """Starts watching stdin and SIGTERM."""
+        signal.signal(signal.SIGTERM, lambda *_: self.cancel.set())
+        if hasattr(signal, "SIGINT"):
+            signal.signal(signal.SIGINT, lambda *_: self.cancel.set())
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self):
+        try:
+            # os.read, not sys.stdin: a thread inside the buffered reader blocks interpreter exit.
+            pending = b""
+            while not self.cancel.is_set():
+                chunk = os.read(0, 4096)
+                pending += chunk
+                if not chunk or b"cancel" in pending.split():
+                    break
+                pending = pending[-16:]
+        except OSError:
+            pass
+        self.cancel.set()
+
+    def send(self, event, **values):
+        """Writes one event line; a vanished reader means cancel."""
+        try:
+            self._out.write(json.dumps({"event": event, **values}, ensure_ascii=True) + "\n")
+            self._out.flush()
+        except (OSError, ValueError):
+            self.cancel.set()
+
+
+def be_polite():
+    """Low priority, and the first to go when memory runs out: never Blender."""
+    if hasattr(os, "nice"):
+        os.nice(10)
+    elif sys.platform == "win32":
+        below_normal = 0x4000
+        kernel = ctypes.windll.kernel32
+        kernel.SetPriorityClass(kernel.GetCurrentProcess(), below_normal)
+    try:
+        Path("/proc/self/oom_score_adj").write_text("800", encoding="ascii")
+    except OSError:
+        pass
+
+
+def layout(library, host, arguments):
+    """The 'layout' command; returns the exit code."""
+    warnings = run_layout(library, arguments.directory, host.cancel.is_set)
+    if warnings is None:
+        return CANCELLED
+    for culprit, text in warnings:
+        host.send("warning", culprit=culprit, text=text)
+    host.send("done", directory=str(arguments.directory))
+    return DONE
+
+
+def bake(library, host, arguments):
+    """The 'bake' command; returns the exit code."""
+    with Reader(arguments.directory, "snapshot") as reader:
+        settings = fill_settings(library, reader.data.get("settings", {}))
+        builder = SceneBuilder(library, reader)
+        known = reader.data.get("warnings", [])
+        extras = reader.data.get("extras")
+        try:
+            if not builder.build(host.cancel.is_set):
+                return CANCELLED
+            send_scene_warnings(library, host, builder)
+        except BaseException:
+            builder.release()
+            raise
+    job = abi.Handle()
+    try:
+        check(library, library.ajar_job_start(builder.scene, ctypes.byref(settings), ctypes.byref(job)))
+    finally:
+        builder.release()  # the job keeps its own reference
+    try:
+        return finish(library, host, job, arguments, known, extras)
+    finally:
+        library.ajar_job_release(ctypes.byref(job))
+
+
+def send_scene_warnings(library, host, builder):
+    """Passes the warnings of scene building on."""
+    for culprit, text in read_warnings(library, builder.scene, "scene"):
+        host.send("warning", culprit=culprit, text=text)
+
+
+def finish(library, host, job, arguments, known, extras):
+    """Waits for the job, then writes the package and the report; returns the exit code."""
+    result = wait(library, host, job)
+    if result == abi.CANCELLED or host.cancel.is_set():
+        return CANCELLED
+    if result < 0:
+        raise job_error(library, job, result)
+    report = read_report(library, job, known)
+    extras_text = None if extras is None else json.dumps(extras).encode("utf-8")
+    check(library, library.ajar_job_write_package(job, os.fsencode(arguments.package), extras_text))
+    if arguments.report:
+        write_text_whole(arguments.report, report)
+    host.send("done", package=str(arguments.package), report=str(arguments.report or ""))
+    return DONE
+
+
+def wait(library, host, job):
+    """Polls until the job ends, sending progress; returns the job's result."""
+    progress = abi.Progress()
+    asked = False
+    while True:
+        result = library.ajar_job_wait(job, POLL_SECONDS)
+        library.ajar_progress_init(ctypes.byref(progress))
+        check(library, library.ajar_job_poll(job, ctypes.byref(progress)))
+        host.send("progress", stage=decode(library.ajar_stage_name(progress.stage)),
+                  fraction=round(progress.fraction, 5), elapsed=round(progress.elapsed, 3),
+                  remaining=round(progress.remaining, 1), rays=progress.rays)
+        if result != abi.RUNNING:
+            return result
+        if host.cancel.is_set() and not asked:
+            library.ajar_job_cancel(job)
+            asked = True
+
+
+def job_error(library, job, result):
+    """The job's own failure as a BakeError."""
+    text, culprit = ctypes.create_string_buffer(2048), ctypes.create_string_buffer(1024)
+    library.ajar_job_error(job, text, len(text), culprit, len(culprit))
+    message = decode(text.value) or decode(library.ajar_result_text(result))
+    return BakeError(result, message, decode(culprit.value))
+
+
+def read_report(library, job, known):
+    """The engine's report as JSON text, with the warnings of extraction put before its own."""
+    size = ctypes.c_uint64()
+    library.ajar_job_report(job, None, ctypes.byref(size))
+    buffer = ctypes.create_string_buffer(size.value)
+    check(library, library.ajar_job_report(job, buffer, ctypes.byref(size)))
+    report = json.loads(decode(buffer.value))
+    if known:
+        report["warnings"] = list(known) + list(report.get("warnings", []))
+    return json.dumps(report, indent=2, ensure_ascii=False) + "\n"
+
+
+def parse(arguments):
+    """Command line as a namespace."""
+    parser = argparse.ArgumentParser(prog="worker.py", description="Ajar bake worker")
+    commands = parser.add_subparsers(dest="command", required=True)
+    for name, function in (("layout", layout), ("bake", bake)):
+        command = commands.add_parser(name)
+        command.add_argument("directory", type=Path)
+        command.set_defaults(run=function)
+        if name == "bake":
+            command.add_argument("--package", type=Path, required=True)
+            command.add_argument("--report", type=Path)
+    return parser.parse_args(arguments)
+
+
+def main(arguments=None):
+    """Runs one command; returns the exit code."""
+    faulthandler.enable()
+    arguments = parse(arguments)
+    be_polite()
+    host = Host()
+    host.listen()
+    try:
+        code = arguments.run(load_library(), host, arguments)
+    except BakeError as error:
+        host.send("error", code=error.code, message=error.message, culprit=error.culprit)
+        return FAILED
+    except SnapshotError as error:
+        host.send("error", code=abi.ERROR_INPUT, message=str(error), culprit=str(arguments.directory))
+        return FAILED
+    except MemoryError:
+        host.send("error", code=abi.ERROR_MEMORY, message="out of memory", culprit="")
+        return FAILED
+    except OSError as error:
+        host.send("error", code=abi.ERROR_IO, message=str(error), culprit=str(error.filename or ""))
+        return FAILED
+    if code == CANCELLED:
+        host.send("cancelled")
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

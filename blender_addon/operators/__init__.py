@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Operators, one file per concept."""
+import bpy
+
+from . import bake, check, elements, preview, uvs
+
+CLASSES = (*bake.CLASSES, *check.CLASSES, *elements.CLASSES, *preview.CLASSES, *uvs.CLASSES)
+
+
+def register():
+    """Registers the operators."""
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    """Undoes register()."""
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file that knows Embree; compiles against versions 3 and 4.
+#include "accel/embree_scene.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#define AJAR_EMBREE4
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <tbb/task_arena.h>
+
+#include <cstring>
+
+namespace ajar {
+
+namespace {
+
+static_assert(sizeof(RayPacket) == sizeof(RTCRayHit8));
+static_assert(offsetof(RayPacket, tfar) == offsetof(RTCRay8, tfar));
+static_assert(offsetof(RayPacket, nx) == offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, Ng_x));
+static_assert(offsetof(RayPacket, triangle) == offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, primID));
+
+constexpr int kMaxLayers = 256; ///< transmissive surfaces one shadow ray may cross
+
+void call_intersect8(const int32_t* valid, RTCScene scene, RTCRayHit8* rays) {
+#ifdef AJAR_EMBREE4
+    rtcIntersect8(valid, scene, rays, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect8(valid, scene, &context, rays);
+#endif
+}
+
+void call_occluded8(const int32_t* valid, RTCScene scene, RTCRay8* rays) {
+#ifdef AJAR_EMBREE4
+    rtcOccluded8(valid, scene, rays, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, scene, &context, rays);
+#endif
+}
+
+void call_intersect1(RTCScene scene, RTCRayHit* ray) {
+#ifdef AJAR_EMBREE4
+    rtcIntersect1(scene, ray, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, ray);
+#endif
+}
+
+RTCRayHit make_ray(const Ray& r, uint32_t mask) {
+    RTCRayHit q{};
+    q.ray.org_x = r.origin.x, q.ray.org_y = r.origin.y, q.ray.org_z = r.origin.z;
+    q.ray.dir_x = r.direction.x, q.ray.dir_y = r.direction.y, q.ray.dir_z = r.direction.z;
+    q.ray.tnear = r.tnear;
+    q.ray.tfar = r.tfar;
+    q.ray.mask = mask;
+    q.hit.geomID = q.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return q;
+}
+
+} // namespace
+
+// The same ray meets the same triangle at the same t, so a slightly larger tnear is past it for
+// sure, even at grazing angles where a moved origin would meet it again.
+float next_tnear(float t) { return t * (1.0f + 4.0f * 0x1p-23f) + 1e-20f; }
+
+void RayPacket::prepare(uint32_t ray_mask) {
+    for (uint32_t i = 0; i < kLanes; ++i) {
+        tnear[i] = time[i] = 0.0f;
+        mask[i] = ray_mask;
+        id[i] = flags[i] = 0;
+        group[i] = instance[i] = RTC_INVALID_GEOMETRY_ID;
+        triangle[i] = kMiss;
+    }
+}
+
+struct Tracer::Impl {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<uint32_t> first; ///< first triangle of each geometry
+
+    ~Impl() {
+        if (scene != nullptr) rtcReleaseScene(scene);
+        if (device != nullptr) rtcReleaseDevice(device);
+    }
+
+    void add_group(const Snapshot& s, uint32_t begin, uint32_t end) {
+        RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), s.positions.size());
+        auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - begin));
+        if (vertices == nullptr || indices == nullptr) throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer");
+        std::memcpy(vertices, s.positions.data(), s.positions.size() * sizeof(Vec3));
+        for (uint32_t t = begin; t < end; ++t) std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
+        rtcSetGeometryMask(g, s.ray_mask(s.triangles[begin]));
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(scene, g);
+        rtcReleaseGeometry(g);
+        first.push_back(begin);
+    }
+};
+
+Tracer::Tracer(const Snapshot& s) : scene_(s), impl_(std::make_unique<Impl>()), floor_(std::max(s.diagonal(), 1e-6f) * 1e-3f) {
+    impl_->device = rtcNewDevice(nullptr);
+    if (impl_->device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
+    impl_->scene = rtcNewScene(impl_->device);
+    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+    const auto count = static_cast<uint32_t>(s.triangles.size());
+    for (uint32_t begin = 0, end; begin < count; begin = end) {
+        for (end = begin + 1; end < count && s.ray_mask(s.triangles[end]) == s.ray_mask(s.triangles[begin]);) ++end;
+        has_transmissive_ |= (s.ray_mask(s.triangles[begin]) & kMaskShadowTransmissive) != 0;
+        if (s.ray_mask(s.triangles[begin]) != 0) impl_->add_group(s, begin, end);
+    }
+    // One thread: a parallel build may order coincident triangles differently each time, and the
+    // bake promises the same bytes for any number of threads.
+    tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw Error(AJAR_ERROR_MEMORY, "the ray tracer could not be built");
+}
+
+Tracer::~Tracer() = default;
+
+void Tracer::intersect(const int32_t* valid, RayPacket& rays) const {
+    call_intersect8(valid, impl_->scene, reinterpret_cast<RTCRayHit8*>(&rays));
+    for (uint32_t i = 0; i < kLanes; ++i) rays.triangle[i] = rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : rays.triangle[i] + impl_->first[rays.group[i]];
+}
+
+void Tracer::occluded(const int32_t* valid, RayPacket& rays) const {
+    call_occluded8(valid, impl_->scene, reinterpret_cast<RTCRay8*>(&rays));
+}
+
+Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
+    RTCRayHit q = make_ray(ray, mask);
+    call_intersect1(impl_->scene, &q);
+    if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    const uint32_t triangle = q.hit.primID + impl_->first[q.hit.geomID];
+    const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
+    return {triangle, q.hit.u, q.hit.v, q.ray.tfar, (side > 0.0f) != scene_.triangles[triangle].mirrored};
+}
+
+Vec3 Tracer::tint(Ray ray) const {
+    Vec3 left(1.0f);
+    if (!has_transmissive_) return left;
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+        const Hit hit = intersect(ray, kMaskShadowTransmissive);
+        if (hit.triangle == kMiss) return left;
+        left *= scene_.surface(hit.triangle, hit.u, hit.v).transmittance;
+        if (max_component(left) < 1e-4f) return Vec3(0.0f);
+        ray.tnear = next_tnear(hit.t);
+    }
+    return Vec3(0.0f);
+}
+
+Vec3 Tracer::transmittance(const Ray& ray) const {
+    const Hit hit = intersect(ray, kMaskShadowOpaque);
+    return hit.triangle == kMiss ? tint(ray) : Vec3(0.0f);
+}
+
+} // namespace ajar

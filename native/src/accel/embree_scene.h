@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "accel/ray.h"
+
+#include <memory>
+
+namespace ajar {
+
+/// Where to go on behind a hit at t on the same ray.
+float next_tnear(float t);
+
+/// Ray tracing over the flattened snapshot, which must outlive it. Safe from any thread.
+class Tracer {
+public:
+    explicit Tracer(const Snapshot& scene);
+    ~Tracer();
+    Tracer(const Tracer&) = delete;
+    Tracer& operator=(const Tracer&) = delete;
+
+    /// Closest hits of the lanes whose valid entry is -1.
+    void intersect(const int32_t* valid, RayPacket& rays) const;
+    /// Lanes that are blocked by an opaque surface get tfar = -infinity.
+    void occluded(const int32_t* valid, RayPacket& rays) const;
+    Hit intersect(const Ray& ray, uint32_t mask) const;
+    /// What is left of light along a shadow ray: 0 behind anything opaque, else the product of
+    /// the transmittances in between.
+    Vec3 transmittance(const Ray& ray) const;
+    /// The transmissive surfaces' part of transmittance; 1 if the scene has none.
+    Vec3 tint(Ray ray) const;
+    bool has_transmissive() const { return has_transmissive_; }
+
+    /// Origin moved off the surface along the unit normal n, far enough that a ray which starts
+    /// there does not meet the surface again (algorithms.md 9.6).
+    Vec3 offset(const Vec3& p, const Vec3& n) const { return p + n * offset_distance(p); }
+    float offset_distance(const Vec3& p) const {
+        return std::max(std::max(std::abs(p.x), std::abs(p.y)), std::max(std::abs(p.z), floor_)) * (16.0f * 0x1p-23f);
+    }
+
+private:
+    struct Impl;
+    const Snapshot& scene_;
+    std::unique_ptr<Impl> impl_;
+    float floor_;
+    bool has_transmissive_ = false;
+};
+
+} // namespace ajar

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "api/job.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+namespace ajar {
+
+namespace {
+
+using nlohmann::json;
+
+json settings_json(const ajar_settings& s) {
+    return {{"bounces", s.bounces}, {"noise_target", s.noise_target}, {"time_limit", s.time_limit}, {"samples", s.samples},
+            {"bounce_samples", s.bounce_samples}, {"direct_samples", s.direct_samples}, {"positions_per_texel", s.positions_per_texel},
+            {"seed", s.seed}, {"threads", s.threads}, {"stitch_seams", s.stitch_seams != 0}, {"keep_sh", s.keep_sh != 0}};
+}
+
+json seconds_json(const Job& job) {
+    json stages = json::object();
+    for (uint32_t s = AJAR_STAGE_RECEIVERS; s < AJAR_STAGE_DONE; ++s) stages[ajar_stage_name(s)] = job.progress().stage_seconds(s);
+    return {{"total", job.seconds()}, {"stages", stages}};
+}
+
+/// Relative standard errors of valid texels, sorted; dark texels count against a floor of 1% of
+/// the median (algorithms.md 10.4).
+std::vector<float> relative_errors(const JobOutput& o) {
+    std::vector<float> levels;
+    for (size_t r = 0; r < o.receivers.count(); ++r) levels.push_back(luminance(o.pages.irradiance[o.receivers.texel[r]]));
+    if (levels.empty()) return {};
+    std::vector<float> sorted = levels;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2), sorted.end());
+    const float floor = 0.01f * sorted[sorted.size() / 2];
+    std::vector<float> errors;
+    for (size_t r = 0; r < levels.size(); ++r)
+        if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)
+            errors.push_back(o.pages.standard_error[o.receivers.texel[r]] / (levels[r] + floor));
+    std::sort(errors.begin(), errors.end());
+    return errors;
+}
+
+json error_json(const Job& job, const JobOutput& o) {
+    const std::vector<float> e = relative_errors(o);
+    double squares = 0.0, within = 0.0;
+    for (const float v : e) squares += double(v) * v, within += v <= job.settings().noise_target;
+    const auto at = [&](double q) { return e.empty() ? 0.0 : double(e[std::min(e.size() - 1, static_cast<size_t>(q * static_cast<double>(e.size())))]); };
+    const double rms = e.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(e.size()));
+    const double gather = job.progress().stage_seconds(AJAR_STAGE_GATHER);
+    return {{"estimated_rms", rms}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"target", job.settings().noise_target},
+            {"share_reached", e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
+            {"calibration", o.bake.error_calibration},
+            {"next_step", {{"noise", rms / 2.0}, {"seconds", job.seconds() + 3.0 * gather}}}};
+}
+
+json bounces_json(const Job& job, const JobOutput& o) {
+    double total = 0.0;
+    for (const double m : o.bake.bounce_means) total += m;
+    const auto& means = o.bake.bounce_means;
+    return {{"count", job.settings().bounces}, {"means", means}, {"last_share", total > 0.0 ? means.back() / total : 0.0}};
+}
+
+json effect(const char* name, bool used, const std::string& why) {
+    return {{"name", name}, {"status", used ? "simulated" : "skipped"}, {"reason", why}};
+}
+
+json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& settings) {
+    size_t primary = 0, transmissive = 0, unmapped = 0, lit = 0;
+    for (const Light& l : s.lights) primary += l.primary && !l.dark(), lit += !l.dark();
+    for (const Material& m : s.materials) transmissive += m.transmits;
+    for (const Instance& i : s.instances) unmapped += !i.lightmapped;
+    const auto n = [](size_t v) { return std::to_string(v); };
+    return {effect("primary lights", primary != 0, n(primary) + " lamps"), effect("static lights", lit != primary, n(lit - primary) + " lamps"),
+            effect("emissive surfaces", o.emissive_triangles != 0, n(o.emissive_triangles) + " triangles"),
+            effect("sky", s.sky.lit(), !s.sky.lit() ? "no sky or black" : o.sky_sampled ? "image, importance sampled" : "constant"),
+            effect("transparency", transmissive != 0, n(transmissive) + " materials"),
+            effect("surfaces without lightmap", unmapped != 0, n(unmapped) + " objects"),
+            effect("bounces", settings.bounces != 0, n(settings.bounces) + " bounces"),
+            effect("seam stitching", o.pages.seam_points != 0, n(o.pages.seam_points) + " seam points")};
+}
+
+json receivers_json(const JobOutput& o) {
+    const double count = std::max(1u, o.receivers.count());
+    return {{"texels", o.receivers.count()}, {"invalid", o.pages.invalid_texels}, {"invalid_share", static_cast<double>(o.pages.invalid_texels) / count},
+            {"albedo_clamped", o.receivers.clamped_albedo}, {"positions_pushed_out", o.receivers.pushed_positions}, {"range_clamped", o.pages.clamped_texels}};
+}
+
+uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+} // namespace
+
+std::string make_report(const Job& job) {
+    const JobOutput& o = job.output();
+    json warnings = json::array();
+    for (const Warning& w : o.warnings) warnings.push_back({{"culprit", w.culprit}, {"text", w.text}});
+    const double seconds = std::max(job.seconds(), 1e-9);
+    const json report = {{"version", 1}, {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT}, {"name", job.scene().name}, {"result", "success"},
+                         {"settings", settings_json(job.settings())}, {"seconds", seconds_json(job)},
+                         {"rays", {{"total", job.progress().rays()}, {"per_second", static_cast<double>(job.progress().rays()) / seconds}}},
+                         {"receivers", receivers_json(o)}, {"error", error_json(job, o)}, {"bounces", bounces_json(job, o)},
+                         {"time_limited", o.bake.time_limited}, {"effects", effects_json(job.scene(), o, job.settings())},
+                         {"warnings", warnings}, {"memory_bytes", peak_memory()}};
+    return report.dump(2, ' ', false, json::error_handler_t::replace);
+}
+
+} // namespace ajar

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "api/handles.h"
+#include "api/job.h"
+#include "receiver/layout.h"
+#include "scene/snapshot_builder.h"
+
+namespace ajar {
+
+HandleTable<SnapshotBuilder>& scenes();
+HandleTable<Job>& jobs();
+HandleTable<Layout>& layouts();
+
+} // namespace ajar

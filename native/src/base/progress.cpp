@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/progress.h"
+
+#include <algorithm>
+
+namespace ajar {
+
+namespace {
+
+double seconds_since(Progress::Clock::time_point then) {
+    return std::chrono::duration<double>(Progress::Clock::now() - then).count();
+}
+
+} // namespace
+
+void Progress::start() {
+    start_ = stage_start_ = Clock::now();
+    stage_.store(AJAR_STAGE_IDLE, std::memory_order_relaxed);
+    fraction_.store(0.0f, std::memory_order_relaxed);
+}
+
+void Progress::begin_stage(uint32_t stage, float end_fraction) {
+    check_cancel();
+    seconds_[this->stage()].fetch_add(seconds_since(stage_start_), std::memory_order_relaxed);
+    stage_start_ = Clock::now();
+    stage_begin_ = stage_end_;
+    stage_end_ = std::max(stage_begin_, end_fraction);
+    fraction_.store(stage_begin_, std::memory_order_relaxed);
+    stage_.store(stage, std::memory_order_relaxed);
+}
+
+void Progress::update(float stage_fraction) {
+    const float f = std::clamp(stage_fraction, 0.0f, 1.0f);
+    fraction_.store(stage_begin_ + (stage_end_ - stage_begin_) * f, std::memory_order_relaxed);
+}
+
+double Progress::elapsed() const { return seconds_since(start_); }
+
+} // namespace ajar

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "encode/ahd.h"
+#include "package/manifest.h"
+#include "pass/bake.h"
+
+namespace ajar {
+
+/// The bake over all texels of all pages, ready to be stored or read by the caller.
+struct BakedPages {
+    std::vector<Vec3> irradiance, albedo;
+    std::vector<float> standard_error, samples, validity;
+    std::vector<float> sh_rgb; ///< [texels][27] or empty
+    std::vector<uint32_t> packed_irradiance, packed_direction;
+    std::vector<std::vector<Vec3>> bounces;
+    uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
+    uint64_t seam_points = 0;
+    uint64_t clamped_texels = 0;  ///< too bright for the packed format
+};
+
+/// Share of a receiver's rays that may meet the inside of solids before its light is distrusted.
+inline constexpr float kInsideShare = 0.3f;
+
+/// Scatters receivers to their texels, stitches seams, fills gaps and packs (algorithms.md 1, 9).
+BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result, const ajar_settings& settings,
+                      ThreadPool& pool, Progress& progress);
+
+/// View of the pages for the package writer; baked must outlive it.
+PackageContent package_content(const Snapshot& scene, const BakedPages& baked);
+
+} // namespace ajar

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "package/manifest.h"
+
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+
+namespace ajar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+#ifdef AJAR_VERSION_TEXT
+constexpr const char* kGenerator = "Ajar " AJAR_VERSION_TEXT;
+#else
+constexpr const char* kGenerator = "Ajar";
+#endif
+
+/// 64 bit hash of a sequence of values: xor, multiply, fold per 8 bytes (splitmix64's constants).
+class Hash64 {
+public:
+    void add(uint64_t value) {
+        state_ = (state_ ^ value) * 0xbf58476d1ce4e5b9ull;
+        state_ ^= state_ >> 29;
+    }
+    void add_bytes(const void* data, size_t size) {
+        add(size);
+        const auto* bytes = static_cast<const uint8_t*>(data);
+        for (; size >= 8; size -= 8, bytes += 8) {
+            uint64_t word;
+            std::memcpy(&word, bytes, 8);
+            add(word);
+        }
+        uint64_t rest = 0;
+        if (size > 0) std::memcpy(&rest, bytes, size);
+        add(rest);
+    }
+    template <typename T>
+    void add_array(std::span<const T> values) {
+        add_bytes(values.data(), values.size_bytes());
+    }
+    uint64_t value() const {
+        const uint64_t folded = (state_ ^ (state_ >> 30)) * 0x94d049bb133111ebull;
+        return folded ^ (folded >> 31);
+    }
+
+private:
+    uint64_t state_ = 0x9e3779b97f4a7c15ull;
+};
+
+Json page_json(const PackagePage& page, size_t index) {
+    const PageFiles files(index);
+    Json json;
+    json["width"] = page.width;
+    json["height"] = page.height;
+    json["irradiance"] = files.irradiance;
+    json["quality"] = files.quality;
+    json["sh"] = page.sh.empty() ? Json(nullptr) : Json(files.sh);
+    json["packed"] = {{"irradiance", files.packed_irradiance},
+                      {"direction", files.packed_direction},
+                      {"direction_png", files.direction_png},
+                      {"layout", "ahd-r11g11b10f-rgba8"}};
+    return json;
+}
+
+Json instance_json(const PackageInstance& instance) {
+    Json json;
+    json["name"] = instance.name;
+    json["page"] = instance.page;
+    json["uv_layer"] = instance.uv_layer;
+    json["uv_scale"] = {instance.uv_scale[0], instance.uv_scale[1]};
+    json["uv_offset"] = {instance.uv_offset[0], instance.uv_offset[1]};
+    return json;
+}
+
+Json parse_extras(const std::string& text) {
+    if (text.empty()) return Json::object();
+    Json extras = Json::parse(text, nullptr, false);
+    if (!extras.is_object()) throw Error(AJAR_ERROR_ARGUMENT, "The package's extras are not a JSON object");
+    return extras;
+}
+
+} // namespace
+
+PageFiles::PageFiles(size_t page) {
+    const std::string stem = "page_" + std::to_string(page);
+    irradiance = stem + ".irradiance.exr";
+    quality = stem + ".quality.exr";
+    sh = stem + ".sh.exr";
+    packed_irradiance = stem + ".irradiance.dds";
+    packed_direction = stem + ".direction.dds";
+    direction_png = stem + ".direction.png";
+}
+
+std::string content_hash(const PackageContent& content) {
+    Hash64 hash;
+    for (const PackagePage& page : content.pages) {
+        hash.add(page.width);
+        hash.add(page.height);
+        for (const auto& layer : {page.irradiance, page.stderr_, page.samples, page.validity, page.sh})
+            hash.add_array(layer);
+        hash.add_array(page.packed_irradiance);
+        hash.add_array(page.packed_direction);
+    }
+    for (const PackageInstance& instance : content.instances) {
+        hash.add_bytes(instance.name.data(), instance.name.size());
+        hash.add(instance.page);
+        hash.add_bytes(instance.uv_scale, sizeof instance.uv_scale);
+        hash.add_bytes(instance.uv_offset, sizeof instance.uv_offset);
+    }
+    char text[32];
+    std::snprintf(text, sizeof text, "ajar64:%016llx", static_cast<unsigned long long>(hash.value()));
+    return text;
+}
+
+std::string manifest_json(const PackageContent& content) {
+    Json json;
+    json["version"] = 1;
+    json["minVersion"] = 1;
+    json["generator"] = kGenerator;
+    json["name"] = content.name;
+    json["units"] = {{"length", "m"}, {"irradiance", "W/m^2"}, {"color", "scene-linear Rec.709"}};
+    json["pages"] = Json::array();
+    for (size_t i = 0; i < content.pages.size(); ++i) json["pages"].push_back(page_json(content.pages[i], i));
+    json["instances"] = Json::array();
+    for (const PackageInstance& instance : content.instances) json["instances"].push_back(instance_json(instance));
+    json["terms"] = Json::array({{{"elements", Json::array()}, {"name", "base"}}});
+    json["lights"] = Json::array();
+    for (const PackageLight& light : content.lights)
+        json["lights"].push_back({{"name", light.name}, {"role", light.role}});
+    json["content_hash"] = content_hash(content);
+    json["extras"] = parse_extras(content.extras);
+    // Names come from the scene as they are; bytes that are not UTF-8 are replaced, not fatal.
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+bool is_ajar_manifest(std::span<const uint8_t> text) {
+    const Json json = Json::parse(text.begin(), text.end(), nullptr, false);
+    if (!json.is_object() || !json.contains("generator") || !json["generator"].is_string()) return false;
+    return json["generator"].get<std::string>().rfind("Ajar", 0) == 0 && json.contains("pages");
+}
+
+} // namespace ajar

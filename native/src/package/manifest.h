@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace ajar {
+
+/// One page as the bake leaves it. All arrays are width * height texels, bottom row first, channels
+/// interleaved; they stay owned by the caller while the package is written.
+struct PackagePage {
+    uint32_t width = 0, height = 0;
+    std::span<const float> irradiance;           ///< 3 channels, W/m^2
+    std::span<const float> stderr_;              ///< standard error of its luminance, W/m^2
+    std::span<const float> samples;              ///< gather rays
+    std::span<const float> validity;             ///< 1 valid, 0.5 filled, 0 not covered
+    std::span<const float> sh;                   ///< 27 channels, coefficient-major RGB; empty if not kept
+    std::span<const uint32_t> packed_irradiance; ///< R11G11B10F
+    std::span<const uint32_t> packed_direction;  ///< RGBA8, r in the low byte
+};
+
+/// A lightmapped object: page UV = uv * uv_scale + uv_offset.
+struct PackageInstance {
+    std::string name;
+    uint32_t page = 0;
+    float uv_scale[2] = {1.0f, 1.0f};
+    float uv_offset[2] = {0.0f, 0.0f};
+    std::string uv_layer = "AjarLightmap";
+};
+
+struct PackageLight {
+    std::string name;
+    std::string role; ///< "primary" or "static"
+};
+
+/// All that a package holds.
+struct PackageContent {
+    std::string name;
+    std::string extras; ///< JSON object as text, or empty
+    std::vector<PackagePage> pages;
+    std::vector<PackageInstance> instances;
+    std::vector<PackageLight> lights;
+};
+
+/// File names of a page's images, e.g. "page_0.irradiance.exr".
+struct PageFiles {
+    explicit PageFiles(size_t page);
+    std::string irradiance, quality, sh, packed_irradiance, packed_direction, direction_png;
+};
+
+/// Hash of the pages' sizes and texels and of the instances, e.g. "ajar64:0123456789abcdef". Equal
+/// for equal content, whatever the image library's compression does.
+std::string content_hash(const PackageContent& content);
+
+/// manifest.json (schemas/manifest.schema.json). Throws Error(AJAR_ERROR_ARGUMENT) if extras is not
+/// a JSON object.
+std::string manifest_json(const PackageContent& content);
+
+/// True if the text is a manifest that some version of Ajar wrote.
+bool is_ajar_manifest(std::span<const uint8_t> text);
+
+} // namespace ajar

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "package/package_writer.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "package/dds.h"
+#include "package/file_io.h"
+#include "package/image_io.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = "manifest.json";
+
+void check_page(const PackagePage& page, size_t index) {
+    const size_t texels = size_t(page.width) * page.height;
+    const bool floats = page.irradiance.size() == 3 * texels && page.stderr_.size() == texels &&
+                        page.samples.size() == texels && page.validity.size() == texels;
+    const bool words = page.packed_irradiance.size() == texels && page.packed_direction.size() == texels;
+    const bool sh = page.sh.empty() || page.sh.size() == 27 * texels;
+    if (texels == 0 || !floats || !words || !sh)
+        throw Error(AJAR_ERROR_ARGUMENT, "Page " + std::to_string(index) + " of the package has a layer of wrong size");
+}
+
+std::vector<uint8_t> encode_quality(const PackagePage& page) {
+    std::vector<float> data;
+    data.reserve(page.stderr_.size() * 3);
+    for (size_t i = 0; i < page.stderr_.size(); ++i)
+        data.insert(data.end(), {page.stderr_[i], page.samples[i], page.validity[i]});
+    return encode_exr(page.width, page.height, {"stderr", "samples", "validity"}, data);
+}
+
+std::vector<std::string> sh_channels() {
+    std::vector<std::string> names;
+    for (int c = 0; c < 9; ++c)
+        for (const char* color : {".R", ".G", ".B"}) names.push_back("sh" + std::to_string(c) + color);
+    return names;
+}
+
+void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
+    const PageFiles files(index);
+    const uint32_t w = page.width, h = page.height;
+    write_file_synced(folder / files.irradiance, encode_exr(w, h, {"R", "G", "B"}, page.irradiance));
+    write_file_synced(folder / files.quality, encode_quality(page));
+    if (!page.sh.empty()) write_file_synced(folder / files.sh, encode_exr(w, h, sh_channels(), page.sh));
+    write_file_synced(folder / files.packed_irradiance,
+                      encode_dds(w, h, DdsFormat::kR11G11B10Float, page.packed_irradiance));
+    write_file_synced(folder / files.packed_direction,
+                      encode_dds(w, h, DdsFormat::kR8G8B8A8Unorm, page.packed_direction));
+    write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
+}
+
+/// "page_<number>.<rest>" and the manifest are Ajar's; everything else belongs to someone else.
+bool is_own_file(const std::string& name) {
+    if (name == kManifest) return true;
+    if (name.rfind("page_", 0) != 0) return false;
+    const size_t dot = name.find('.', 5);
+    if (dot == std::string::npos || dot == 5 ||
+        !std::all_of(name.begin() + 5, name.begin() + long(dot), [](char c) { return c >= '0' && c <= '9'; }))
+        return false;
+    const PageFiles files(0);
+    const std::string rest = "page_0" + name.substr(dot);
+    return rest == files.irradiance || rest == files.quality || rest == files.sh || rest == files.packed_irradiance ||
+           rest == files.packed_direction || rest == files.direction_png;
+}
+
+/// Refuses to replace what is not a package.
+void check_replaceable(const fs::path& existing) {
+    const auto refuse = [&](const std::string& why) {
+        throw Error(AJAR_ERROR_IO,
+                    "Will not replace \"" + existing.string() + "\": " + why +
+                        ". Choose another output folder or empty this one.",
+                    existing.string());
+    };
+    if (!fs::is_directory(existing)) refuse("it is a file, not a folder");
+    if (fs::is_empty(existing)) return;
+    const fs::path manifest = existing / kManifest;
+    if (!fs::is_regular_file(manifest)) refuse("it holds files but no Ajar package (no manifest.json)");
+    if (!is_ajar_manifest(read_file(manifest))) refuse("its manifest.json was not written by Ajar");
+}
+
+/// Hard links (or copies) foreign files of the old package into the new one.
+void carry_over(const fs::path& existing, const fs::path& temporary) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(existing)) {
+        const std::string name = entry.path().filename().string();
+        if (is_own_file(name)) continue;
+        std::error_code failed;
+        const auto options = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
+        fs::copy(entry.path(), temporary / name, options | fs::copy_options::create_hard_links, failed);
+        if (failed) fs::copy(entry.path(), temporary / name, options | fs::copy_options::overwrite_existing);
+    }
+}
+
+} // namespace
+
+void write_package(const PackageContent& content, const fs::path& directory) {
+    for (size_t i = 0; i < content.pages.size(); ++i) check_page(content.pages[i], i);
+    const std::string manifest = manifest_json(content);
+    const auto fill = [&](const fs::path& folder) {
+        for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, folder);
+        write_file_synced(folder / kManifest, {reinterpret_cast<const uint8_t*>(manifest.data()), manifest.size()});
+    };
+    const auto accept_existing = [&](const fs::path& existing, const fs::path* temporary) {
+        if (temporary)
+            carry_over(existing, *temporary);
+        else
+            check_replaceable(existing);
+    };
+    replace_directory(directory, fill, accept_existing);
+}
+
+} // namespace ajar

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Series expansion (algorithms.md 5): the direct light of every source, then one coarse gather
+// per bounce, then one fine gather of everything into the directional basis. Each pass reads only
+// what the pass before it finished, so no result depends on the order of tiles.
+#include "pass/bake.h"
+
+#include "base/hash.h"
+
+#include <bit>
+#include <memory>
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kSourceSamples = 16;   ///< emitter samples per receiver that feed the bounces
+constexpr uint32_t kPilotRays = 64;
+constexpr uint32_t kPilotReceivers = 8;   ///< of each tile
+constexpr uint32_t kCalibrationStep = 4;  ///< every n-th tile is estimated twice
+constexpr float kFinalShare = 0.5f;       ///< cosine share of the final rays (algorithms.md 1.10)
+constexpr float kQuadNormal = 0.95f;      ///< receivers of a 2x2 block share bounce rays if their normals agree
+
+enum Salt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
+
+std::unique_ptr<TileSums> make_sums(bool keep_sh) {
+    auto sums = std::make_unique<TileSums>();
+    sums->clear(keep_sh);
+    return sums;
+}
+
+Vec3 sum_of(const TileSums& s, uint32_t lane) { return {s.irradiance[0][lane], s.irradiance[1][lane], s.irradiance[2][lane]}; }
+
+/// Gather sums to irradiance. Dividing by the sum of cosine weights instead of its expectation
+/// is a ratio estimator: it cancels the noise of the weights, so a uniform room stays uniform.
+Vec3 gathered(const TileSums& s, uint32_t lane) {
+    return s.cosine_sum[lane] > 0.0f ? sum_of(s, lane) * (kPi / s.cosine_sum[lane]) : Vec3(0.0f);
+}
+
+uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
+    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
+}
+
+} // namespace
+
+/// One tile's answer before it is stored.
+struct Baker::TileEstimate {
+    std::unique_ptr<TileSums> direct, gather;
+    Plan plan;
+
+    Vec3 irradiance(uint32_t lane) const {
+        Vec3 e = gathered(*gather, lane);
+        if (plan.direct != 0) e += sum_of(*direct, lane) / static_cast<float>(plan.direct);
+        return e;
+    }
+    float gather_variance(uint32_t lane) const {
+        const auto n = static_cast<float>(std::max(plan.gather, 1u));
+        return gather->pairs[lane] / (n * n);
+    }
+    float direct_variance(uint32_t lane) const {
+        const auto n = static_cast<float>(std::max(plan.direct, 1u));
+        return direct->pairs[lane] / (n * n);
+    }
+};
+
+Baker::Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress)
+    : s_(scene), settings_(settings), pool_(pool), progress_(progress) {
+    current_.resize(s_.receivers.count());
+    radiance_.resize(s_.scene.texel_count());
+}
+
+/// Something can arrive along a gather ray: emission or the sky, or light off other surfaces.
+bool Baker::gathers() const { return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0; }
+
+void Baker::set_radiance(const std::vector<Vec3>& irradiance) {
+    for (uint32_t r = 0; r < s_.receivers.count(); ++r)
+        radiance_[s_.receivers.texel[r]] = Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, 0.0f);
+}
+
+void Baker::keep_bounce(const std::vector<Vec3>& irradiance) {
+    double sum = 0.0;
+    for (const Vec3& e : irradiance) sum += luminance(e);
+    result_.bounce_means.push_back(irradiance.empty() ? 0.0 : sum / static_cast<double>(irradiance.size()));
+    if (settings_.keep_bounces != 0) result_.bounces.push_back(irradiance);
+    if (result_.source.empty()) result_.source.resize(irradiance.size(), Vec3(0.0f));
+    for (size_t i = 0; i < irradiance.size(); ++i) result_.source[i] += irradiance[i];
+}
+
+void Baker::direct_source() {
+    const bool rays_needed = s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
+    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
+        LightChoice choice(s_.emitters, LightRoles::all);
+        uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
+        auto direct = make_sums(false), gather = make_sums(false);
+        MisCounts mis{rays_needed ? static_cast<float>(settings_.bounce_samples) : 0.0f, 1.0f, kSourceSamples};
+        rays += sample_direct(s_.scene, s_.tracer, s_.emitters, choice, s_.receivers, tile, kSourceSamples, mis, seed, *direct);
+        if (rays_needed) {
+            GatherOptions o;
+            o.samples = settings_.bounce_samples;
+            o.emission = true;
+            o.direct_samples = kSourceSamples;
+            o.choice = &choice;
+            o.seed = seed;
+            rays += gather_tile(s_, tile, o, *gather);
+        }
+        for (uint32_t lane = 0; lane < tile.count; ++lane)
+            current_[tile.first + lane] = sum_of(*direct, lane) / static_cast<float>(kSourceSamples) + gathered(*gather, lane);
+        progress_.add_rays(rays);
+    });
+    keep_bounce(current_);
+}
+
+/// One bounce: irradiance from radiance_ into current_. The receivers of a 2x2 block of texels
+/// with like normals split the rays and share the mean, which is enough for light that will be
+/// gathered once more.
+void Baker::bounce(uint32_t index) {
+    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        auto sums = make_sums(false);
+        GatherOptions o;
+        o.samples = std::max(settings_.bounce_samples / 4, 4u);
+        o.radiance = radiance_.data();
+        o.unmapped_direct = index == 1;
+        o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
+        progress_.add_rays(gather_tile(s_, tile, o, *sums));
+        const auto quad = [&](uint32_t r) {
+            const Page& page = s_.scene.pages[s_.scene.instance_of(s_.receivers.triangle[r]).page];
+            const auto local = static_cast<uint32_t>(s_.receivers.texel[r] - page.first_texel);
+            return std::pair{(local % page.width) / 2, local / page.width / 2};
+        };
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            const uint32_t r = tile.first + lane;
+            Vec3 total(0.0f);
+            float count = 0.0f;
+            for (uint32_t other = lane >= 3 ? lane - 3 : 0; other < std::min(lane + 4, tile.count); ++other) {
+                const uint32_t q = tile.first + other;
+                if (quad(q) != quad(r) || glm::dot(s_.receivers.frame[q].z, s_.receivers.frame[r].z) < kQuadNormal) continue;
+                total += gathered(*sums, other);
+                count += 1.0f;
+            }
+            current_[r] = total / count;
+        }
+    });
+    keep_bounce(current_);
+}
+
+Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh) {
+    TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
+    LightChoice choice(s_.emitters, LightRoles::stored);
+    uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
+    if (choice.empty()) t.plan.direct = 0;
+    const MisCounts mis{static_cast<float>(plan.gather), kFinalShare, static_cast<float>(t.plan.direct)};
+    if (t.plan.direct != 0) rays += sample_direct(s_.scene, s_.tracer, s_.emitters, choice, s_.receivers, tile, t.plan.direct, mis, seed, *t.direct);
+    if (plan.gather != 0) {
+        GatherOptions o;
+        o.samples = plan.gather;
+        o.share = kFinalShare;
+        o.radiance = settings_.bounces > 0 ? radiance_.data() : nullptr;
+        o.emission = true;
+        o.unmapped_direct = settings_.bounces > 0;
+        o.direct_samples = t.plan.direct;
+        o.choice = &choice;
+        o.seed = seed;
+        rays += gather_tile(s_, tile, o, *t.gather);
+    }
+    progress_.add_rays(rays);
+    return t;
+}
+
+/// Pilot: few receivers of every tile with few rays, discarded afterwards; their pooled variance
+/// decides each tile's ray counts once (algorithms.md 10.3, 10.4).
+std::vector<Baker::Plan> Baker::plan_rays() {
+    const size_t count = s_.receivers.tiles.size();
+    const uint32_t gather = gathers() ? settings_.samples : 0;
+    std::vector<Plan> plan(count, {gather, settings_.direct_samples});
+    const bool timed = settings_.time_limit > 0.0f;
+    if (!(settings_.noise_target > 0.0f) && !timed) return plan;
+
+    std::vector<Vec3> pilot(count); // luminance, gather and direct variance at the pilot's counts
+    const uint64_t rays_before = progress_.rays();
+    const double start = progress_.elapsed();
+    const Plan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
+    pool_.for_each(count, progress_, [&](size_t i) {
+        Tile tile = s_.receivers.tiles[i];
+        const uint32_t skip = tile.count > kPilotReceivers ? (hash32(static_cast<uint32_t>(i)) % (tile.count - kPilotReceivers)) & ~7u : 0;
+        tile = {tile.first + skip, std::min(kPilotReceivers, tile.count)};
+        const TileEstimate t = estimate(tile, small, hash_combine(settings_.seed, kSaltPilot), false);
+        for (uint32_t lane = 0; lane < tile.count; ++lane)
+            pilot[i] += Vec3(luminance(t.irradiance(lane)), t.gather_variance(lane), t.direct_variance(lane)) / static_cast<float>(tile.count);
+    });
+    const double seconds_per_ray = (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    if (settings_.noise_target > 0.0f) {
+        std::vector<float> levels;
+        for (const Vec3& p : pilot) levels.push_back(p.x);
+        std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
+        const float floor = levels.empty() ? 0.0f : 0.01f * levels[levels.size() / 2];
+        for (size_t i = 0; i < count; ++i) {
+            // The neighbours in tile order pool with the tile itself: eight receivers are few.
+            const Vec3 near = (pilot[i > 0 ? i - 1 : i] + pilot[i] * 2.0f + pilot[i + 1 < count ? i + 1 : i]) * 0.25f;
+            const float allowed = settings_.noise_target * (pilot[i].x + floor);
+            const float budget = 0.5f * allowed * allowed + 1e-30f;
+            if (gather != 0) plan[i].gather = power_of_two(kPilotRays * std::max(near.y, pilot[i].y) / budget, 64, std::max(settings_.samples, 64u));
+            plan[i].direct = power_of_two(static_cast<float>(small.direct) * std::max(near.z, pilot[i].z) / budget, std::min(16u, settings_.direct_samples), std::max(settings_.direct_samples, 1u));
+        }
+    }
+    if (timed) limit_time(plan, seconds_per_ray);
+    return plan;
+}
+
+void Baker::limit_time(std::vector<Plan>& plan, double seconds_per_ray) {
+    const double left = 0.92 * (settings_.time_limit - progress_.elapsed());
+    const auto cost = [&] {
+        double rays = 0.0;
+        for (size_t i = 0; i < plan.size(); ++i) rays += double(plan[i].gather + plan[i].direct) * s_.receivers.tiles[i].count;
+        return rays * seconds_per_ray;
+    };
+    while (cost() > left) {
+        bool changed = false;
+        for (Plan& p : plan) {
+            if (p.gather > 8) p.gather /= 2, changed = true;
+            if (p.direct > 4) p.direct /= 2, changed = true;
+        }
+        if (!changed) break;
+        result_.time_limited = true;
+    }
+}
+
+void Baker::final_gather(const std::vector<Plan>& plan) {
+    const uint32_t n = s_.receivers.count();
+    const bool keep_sh = settings_.keep_sh != 0;
+    result_.irradiance.resize(n);
+    result_.sh.resize(size_t{n} * kShCount);
+    result_.sh_rgb.resize(keep_sh ? size_t{n} * 3 * kShCount : 0);
+    result_.standard_error.resize(n);
+    result_.samples.resize(n);
+    result_.inside.resize(n);
+    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        const TileEstimate t = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal), keep_sh);
+        const float gn = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u)), dn = 1.0f / static_cast<float>(std::max(t.plan.direct, 1u));
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            const size_t r = tile.first + lane;
+            result_.irradiance[r] = t.irradiance(lane);
+            result_.standard_error[r] = std::sqrt(t.gather_variance(lane) + t.direct_variance(lane));
+            result_.samples[r] = static_cast<float>(t.plan.gather);
+            result_.inside[r] = t.gather->inside[lane] * gn;
+            for (int c = 0; c < kShCount; ++c) result_.sh[r * kShCount + c] = t.gather->sh[c][lane] * gn + t.direct->sh[c][lane] * dn;
+            for (int c = 0; c < (keep_sh ? 3 * kShCount : 0); ++c) {
+                const size_t j = size_t(c) * kTileReceivers + lane;
+                result_.sh_rgb[r * 3 * kShCount + c] = t.gather->sh_rgb[j] * gn + t.direct->sh_rgb[j] * dn;
+            }
+        }
+    });
+}
+
+/// The strata estimate is biased up where strata differ in mean. A second, independent answer
+/// for a few receivers measures by how much.
+void Baker::calibrate_error(const std::vector<Plan>& plan) {
+    const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
+    std::vector<Vec2> parts(count, Vec2(0.0f));
+    pool_.for_each(count, progress_, [&](size_t k) {
+        const size_t i = k * kCalibrationStep;
+        const Tile& whole = s_.receivers.tiles[i];
+        const Tile tile{whole.first, std::min(kPilotReceivers, whole.count)};
+        const TileEstimate t = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin), false);
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            const size_t r = tile.first + lane;
+            const float a = luminance(result_.irradiance[r]), b = luminance(t.irradiance(lane));
+            const float level = 0.5f * (a + b);
+            if (!(level > 0.0f)) continue;
+            const float se = result_.standard_error[r] / level, d = (a - b) / level;
+            if (se < 1e-5f) continue;
+            parts[k] += Vec2(0.5f * d * d, se * se);
+        }
+    }, false);
+    double twin = 0.0, strata = 0.0;
+    for (const Vec2& p : parts) twin += p.x, strata += p.y;
+    if (count < 8 || !(strata > 0.0)) return;
+    result_.error_calibration = static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+    for (float& e : result_.standard_error) e *= result_.error_calibration;
+}
+
+BakeResult Baker::run() {
+    progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
+    if (settings_.bounces > 0 || settings_.keep_bounces != 0) direct_source();
+    progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
+    const uint32_t passes = settings_.bounces + (settings_.keep_bounces != 0 ? 1 : 0);
+    for (uint32_t b = 1; b < passes; ++b) {
+        set_radiance(current_);
+        bounce(b);
+    }
+    if (settings_.bounces > 0) {
+        // With every bounce kept apart the last one was made for show; the gather adds it itself.
+        if (settings_.keep_bounces != 0)
+            for (size_t i = 0; i < current_.size(); ++i) result_.source[i] -= result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
+        set_radiance(result_.source);
+    }
+    progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
+    const std::vector<Plan> plan = plan_rays();
+    progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
+    final_gather(plan);
+    calibrate_error(plan);
+    return std::move(result_);
+}
+
+} // namespace ajar

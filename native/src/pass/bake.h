@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "transport/gather.h"
+
+#include <vector>
+
+namespace ajar {
+
+/// What a bake found, per receiver unless said otherwise.
+struct BakeResult {
+    std::vector<Vec3> irradiance;       ///< W/m^2 along the shading normal, stored part
+    std::vector<float> sh;              ///< [count][9] luminance of incident radiance, tangent frame
+    std::vector<float> sh_rgb;          ///< [count][27] if kept
+    std::vector<float> standard_error;  ///< of the irradiance's luminance, W/m^2
+    std::vector<float> samples;         ///< gather rays
+    std::vector<float> inside;          ///< share of rays that met the inside of a solid close by
+    std::vector<std::vector<Vec3>> bounces; ///< irradiance of every bounce, all lights, if kept
+    std::vector<Vec3> source;           ///< irradiance of all lights and bounces that the final gather reflected
+
+    std::vector<double> bounce_means;   ///< mean luminance of each bounce's irradiance
+    float error_calibration = 1.0f;     ///< measured standard error over the strata estimate
+    bool time_limited = false;          ///< the time limit, not the target, set the ray counts
+};
+
+/// Runs the transport passes over all receivers. Throws Cancelled.
+class Baker {
+public:
+    Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress);
+    BakeResult run();
+
+private:
+    struct Plan { ///< ray counts of a tile
+        uint32_t gather = 0, direct = 0;
+    };
+    struct TileEstimate;
+
+    void direct_source();
+    void bounce(uint32_t index);
+    void set_radiance(const std::vector<Vec3>& irradiance);
+    void keep_bounce(const std::vector<Vec3>& irradiance);
+    std::vector<Plan> plan_rays();
+    void limit_time(std::vector<Plan>& plan, double seconds_per_ray);
+    TileEstimate estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh);
+    void final_gather(const std::vector<Plan>& plan);
+    void calibrate_error(const std::vector<Plan>& plan);
+    bool gathers() const;
+
+    GatherScene s_;
+    ajar_settings settings_;
+    ThreadPool& pool_;
+    Progress& progress_;
+    BakeResult result_;
+    std::vector<Vec3> current_;  ///< irradiance of the bounce in hand
+    std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees
+};
+
+} // namespace ajar

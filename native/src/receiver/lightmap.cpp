@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "receiver/lightmap.h"
+
+#include "base/hash.h"
+#include "base/owen_sobol.h"
+
+#include <atomic>
+#include <numeric>
+
+namespace ajar {
+
+namespace {
+
+constexpr int kAlbedoSamples = 16;
+constexpr float kOverlapArea = 1.1f; ///< more triangle area than a texel has means overlapping UVs
+
+uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
+    v = (v | (v << 2)) & 0x33;
+    return (v | (v << 1)) & 0x55;
+}
+
+/// Order key of a texel: page tile, then Morton inside.
+struct TexelKey {
+    uint32_t tile;
+    uint32_t morton;
+};
+
+TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, uint32_t first_tile) {
+    const Page& page = scene.pages[page_index];
+    const auto local = static_cast<uint32_t>(texel - page.first_texel);
+    const uint32_t x = local % page.width, y = local / page.width;
+    const uint32_t tiles_x = (page.width + kTileEdge - 1) / kTileEdge;
+    return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge, part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
+}
+
+/// Columns of the nearly square grid of count cells; count is 1..16.
+uint32_t grid_columns(uint32_t count) {
+    uint32_t columns = 1;
+    while (columns * columns < count) ++columns;
+    while (count % columns != 0) ++columns;
+    return columns;
+}
+
+/// A point of a texel on a triangle.
+struct TexelPoint {
+    uint32_t triangle;
+    float u, v;
+};
+
+struct Builder {
+    const Snapshot& scene;
+    const Tracer& tracer;
+    const Coverage& coverage;
+    uint32_t seed;
+    std::vector<std::pair<uint32_t, uint32_t>> runs; ///< fragments [begin, end) of each receiver
+    LightmapReceivers out;
+    std::atomic<uint64_t> pushed{0}, clamped{0};
+
+    void order();
+    void build(uint32_t receiver);
+    TexelPoint point(uint32_t receiver, Vec2 u) const;
+    TexelPoint sub_texel(uint32_t receiver, uint32_t k, uint32_t base) const;
+    TexelPoint on_triangle(uint32_t triangle, const Vec2& p) const;
+    Vec2 texel_corner(const Fragment& f) const;
+    float depth_inside(uint32_t triangle, const Vec2& p) const;
+    Vec3 smooth_position(const TexelPoint& p) const;
+    Vec3 shading_normal(const TexelPoint& p) const;
+    Vec3 push_out(Vec3 p, const Frame& frame, float size);
+    void set_frame(uint32_t receiver);
+    void set_albedo(uint32_t receiver);
+};
+
+void Builder::order() {
+    struct Entry {
+        TexelKey key;
+        uint32_t begin, end;
+    };
+    std::vector<Entry> entries;
+    std::vector<uint32_t> first_tile(scene.pages.size(), 0);
+    for (size_t p = 1; p < scene.pages.size(); ++p) {
+        const Page& before = scene.pages[p - 1];
+        first_tile[p] = first_tile[p - 1] + ((before.width + kTileEdge - 1) / kTileEdge) * ((before.height + kTileEdge - 1) / kTileEdge);
+    }
+    const auto& f = coverage.fragments;
+    for (uint32_t begin = 0, end; begin < f.size(); begin = end) {
+        for (end = begin + 1; end < f.size() && f[end].texel == f[begin].texel;) ++end;
+        const uint32_t page = scene.instance_of(f[begin].triangle).page;
+        entries.push_back({key_of(scene, page, f[begin].texel, first_tile[page]), begin, end});
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+        return a.key.tile != b.key.tile ? a.key.tile < b.key.tile : a.key.morton < b.key.morton;
+    });
+    for (size_t i = 0; i < entries.size(); ++i) {
+        if (i == 0 || entries[i].key.tile != entries[i - 1].key.tile) out.tiles.push_back({static_cast<uint32_t>(i), 0});
+        ++out.tiles.back().count;
+        runs.emplace_back(entries[i].begin, entries[i].end);
+        out.texel.push_back(f[entries[i].begin].texel);
+    }
+}
+
+/// Picks a fragment by area, then a point of its polygon inside the texel.
+TexelPoint Builder::point(uint32_t receiver, Vec2 u) const {
+    const auto [begin, end] = runs[receiver];
+    float total = 0.0f;
+    for (uint32_t i = begin; i < end; ++i) total += coverage.fragments[i].area;
+    float left = u.x * total;
+    uint32_t i = begin;
+    while (i + 1 < end && left >= coverage.fragments[i].area) left -= coverage.fragments[i++].area;
+    const Fragment& f = coverage.fragments[i];
+    u.x = std::min(left / f.area, 0x1.fffffep-1f);
+    const Vec2 low = texel_corner(f);
+    const float margin = f.ring ? 0.5f : 0.0f;
+    return on_triangle(f.triangle, clip_to_box(texel_triangle(scene, f.triangle), low - margin, low + 1.0f + margin).sample(u));
+}
+
+Vec2 Builder::texel_corner(const Fragment& f) const {
+    const Page& page = scene.pages[scene.instance_of(f.triangle).page];
+    const auto local = static_cast<uint32_t>(f.texel - page.first_texel);
+    return {local % page.width, local / page.width};
+}
+
+TexelPoint Builder::on_triangle(uint32_t triangle, const Vec2& p) const {
+    const auto t = texel_triangle(scene, triangle);
+    const Vec2 a = t[1] - t[0], b = t[2] - t[0], c = p - t[0];
+    const float det = a.x * b.y - a.y * b.x;
+    const float bu = std::clamp((c.x * b.y - c.y * b.x) / det, 0.0f, 1.0f);
+    return {triangle, bu, std::clamp((a.x * c.y - a.y * c.x) / det, 0.0f, 1.0f - bu)};
+}
+
+/// Position k of the texel. A fully covered texel is split into equal cells whose centres integrate
+/// any linear change of light exactly; at chart borders scattered points do.
+TexelPoint Builder::sub_texel(uint32_t receiver, uint32_t k, uint32_t base) const {
+    const auto [begin, end] = runs[receiver];
+    float covered = 0.0f;
+    for (uint32_t i = begin; i < end; ++i) covered += coverage.fragments[i].ring ? 0.0f : coverage.fragments[i].area;
+    const uint32_t columns = grid_columns(out.positions_per_texel), rows = out.positions_per_texel / columns;
+    if (std::abs(covered - 1.0f) > 1e-3f) return point(receiver, owen_sobol(k, base));
+    const Vec2 cell((static_cast<float>(k % columns) + 0.5f) / static_cast<float>(columns), (static_cast<float>(k / columns) + 0.5f) / static_cast<float>(rows));
+    const Vec2 p = texel_corner(coverage.fragments[begin]) + cell;
+    uint32_t best = begin;
+    for (uint32_t i = begin; i < end; ++i)
+        if (depth_inside(coverage.fragments[i].triangle, p) > depth_inside(coverage.fragments[best].triangle, p)) best = i;
+    return on_triangle(coverage.fragments[best].triangle, p);
+}
+
+/// Smallest barycentric weight of p; negative outside the triangle.
+float Builder::depth_inside(uint32_t triangle, const Vec2& p) const {
+    const auto t = texel_triangle(scene, triangle);
+    const Vec2 a = t[1] - t[0], b = t[2] - t[0], c = p - t[0];
+    const float det = a.x * b.y - a.y * b.x;
+    const float u = (c.x * b.y - c.y * b.x) / det, v = (a.x * c.y - a.y * c.x) / det;
+    return std::min({u, v, 1.0f - u - v});
+}
+
+// Hanika 2021, "Hacking the shadow terminator": on the smooth surface that the normals describe,
+// the point lies further out; only outward moves are taken.
+Vec3 Builder::smooth_position(const TexelPoint& p) const {
+    const Triangle& t = scene.triangles[p.triangle];
+    const Vec3 flat = scene.position(p.triangle, p.u, p.v);
+    if (scene.meshes[scene.instances[t.instance].mesh].corner_normals.empty()) return flat;
+    const float weight[3] = {1.0f - p.u - p.v, p.u, p.v};
+    Vec3 moved(0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 n = scene.corner_normal(p.triangle, k);
+        moved += weight[k] * (flat - n * glm::dot(flat - scene.positions[t.vertex[k]], n));
+    }
+    const Vec3 n = scene.geometric_normal(p.triangle);
+    const float outward = glm::dot(moved - flat, n);
+    return outward > 0.0f ? flat + n * outward : flat;
+}
+
+Vec3 Builder::shading_normal(const TexelPoint& p) const {
+    const Vec3 n = scene.corner_normal(p.triangle, 0) * (1.0f - p.u - p.v) + scene.corner_normal(p.triangle, 1) * p.u + scene.corner_normal(p.triangle, 2) * p.v;
+    return normalize_or(n, scene.geometric_normal(p.triangle));
+}
+
+/// A sample inside a solid sees the solid's back faces; it is moved before the nearest one.
+Vec3 Builder::push_out(Vec3 p, const Frame& frame, float size) {
+    for (int round = 0; round < 2; ++round) {
+        Hit nearest;
+        nearest.t = size * std::numbers::sqrt2_v<float>;
+        Vec3 direction(0.0f);
+        for (const Vec3& w : {frame.x, -frame.x, frame.y, -frame.y}) {
+            const Hit hit = tracer.intersect({p, w, 0.0f, nearest.t}, kMaskGather);
+            if (hit.triangle == kMiss) continue;
+            if (hit.back) nearest = hit, direction = w;
+        }
+        if (nearest.triangle == kMiss) break;
+        p = p + direction * nearest.t;
+        p += scene.geometric_normal(nearest.triangle) * (10.0f * tracer.offset_distance(p));
+        pushed.fetch_add(1, std::memory_order_relaxed);
+    }
+    return p;
+}
+
+void Builder::set_frame(uint32_t r) {
+    const auto [begin, end] = runs[r];
+    uint32_t best = begin;
+    for (uint32_t i = begin; i < end; ++i)
+        if (coverage.fragments[i].area > coverage.fragments[best].area) best = i;
+    const uint32_t triangle = coverage.fragments[best].triangle;
+    const auto uv = texel_triangle(scene, triangle);
+    const Triangle& t = scene.triangles[triangle];
+    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
+    const float det = a.x * b.y - a.y * b.x;
+    const Vec3 ea = scene.positions[t.vertex[1]] - scene.positions[t.vertex[0]], eb = scene.positions[t.vertex[2]] - scene.positions[t.vertex[0]];
+    const Vec3 du = (ea * b.y - eb * a.y) / det, dv = (eb * a.x - ea * b.x) / det;
+    Vec3 normal(0.0f);
+    for (uint32_t k = 0; k < 4; ++k) normal += shading_normal(point(r, {(static_cast<float>(k) + 0.5f) / 4.0f, static_cast<float>(k & 1) * 0.5f + 0.25f}));
+    const Vec3 n = normalize_or(normal, scene.geometric_normal(triangle));
+    out.triangle[r] = triangle;
+    out.frame[r] = frame_from_tangent(n, du, glm::dot(glm::cross(n, du), dv) < 0.0f ? -1.0f : 1.0f);
+    out.texel_size[r] = std::sqrt(2.0f * scene.area(triangle) / std::abs(det));
+    out.ring[r] = coverage.fragments[begin].ring;
+}
+
+void Builder::set_albedo(uint32_t r) {
+    Vec3 sum(0.0f);
+    for (int k = 0; k < kAlbedoSamples; ++k) {
+        const TexelPoint p = point(r, {(static_cast<float>(k) + 0.5f) / kAlbedoSamples, unit_float(hash_combine(out.texel[r], k))});
+        sum += scene.surface(p.triangle, p.u, p.v).reflectance;
+    }
+    out.albedo[r] = sum / static_cast<float>(kAlbedoSamples);
+    if (max_component(out.albedo[r]) >= kMaxReflectance - 1e-4f) clamped.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Builder::build(uint32_t r) {
+    set_frame(r);
+    set_albedo(r);
+    const uint32_t k_count = out.positions_per_texel;
+    const uint32_t base = hash_combine(seed, out.texel[r]);
+    for (uint32_t k = 0; k < k_count; ++k) {
+        const TexelPoint p = sub_texel(r, k, base);
+        const Vec3 origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
+        out.positions[size_t{r} * k_count + k] = push_out(origin, out.frame[r], out.texel_size[r]);
+    }
+}
+
+void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector<Warning>& warnings) {
+    std::vector<uint32_t> overlaps(scene.instances.size(), 0);
+    const auto& f = coverage.fragments;
+    for (size_t begin = 0, end; begin < f.size(); begin = end) {
+        float area = 0.0f;
+        for (end = begin; end < f.size() && f[end].texel == f[begin].texel; ++end) area += f[end].ring ? 0.0f : f[end].area;
+        if (area < kOverlapArea) continue;
+        for (size_t i = begin; i < end; ++i)
+            if (i == begin || scene.triangles[f[i].triangle].instance != scene.triangles[f[i - 1].triangle].instance) ++overlaps[scene.triangles[f[i].triangle].instance];
+    }
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const std::string& name = scene.instances[i].name;
+        if (overlaps[i] != 0) warnings.push_back({name, "lightmap UVs overlap in " + std::to_string(overlaps[i]) + " texels, which share their light; unwrap it again with Prepare UVs"});
+        if (coverage.outside_triangles[i] != 0) warnings.push_back({name, std::to_string(coverage.outside_triangles[i]) + " triangles have lightmap UVs outside the page and are not lit there; unwrap it again with Prepare UVs"});
+        if (coverage.flat_uv_triangles[i] != 0) warnings.push_back({name, std::to_string(coverage.flat_uv_triangles[i]) + " triangles have no area in the lightmap UVs and store no light"});
+    }
+}
+
+} // namespace
+
+LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, uint32_t positions_per_texel,
+                                 uint32_t seed, ThreadPool& pool, Progress& progress, std::vector<Warning>& warnings) {
+    Builder b{scene, tracer, coverage, hash_combine(seed, 0xa11ce5u), {}, {}, {}, {}};
+    b.order();
+    const size_t count = b.runs.size();
+    b.out.positions_per_texel = positions_per_texel;
+    b.out.triangle.resize(count);
+    b.out.frame.resize(count);
+    b.out.albedo.resize(count);
+    b.out.texel_size.resize(count);
+    b.out.ring.resize(count);
+    b.out.positions.resize(count * positions_per_texel);
+    pool.for_each(b.out.tiles.size(), progress, [&](size_t i) {
+        for (uint32_t r = b.out.tiles[i].first; r < b.out.tiles[i].first + b.out.tiles[i].count; ++r) b.build(r);
+    });
+    b.out.pushed_positions = b.pushed;
+    b.out.clamped_albedo = b.clamped;
+    warn_about_uvs(scene, coverage, warnings);
+    return std::move(b.out);
+}
+
+} // namespace ajar

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "accel/embree_scene.h"
+#include "base/parallel.h"
+#include "receiver/uv_raster.h"
+
+#include <vector>
+
+namespace ajar {
+
+/// Receivers of a 16x16 block of one page, in Morton order.
+struct Tile {
+    uint32_t first = 0, count = 0; ///< count <= kTileReceivers
+};
+inline constexpr uint32_t kTileEdge = 16, kTileReceivers = kTileEdge * kTileEdge;
+
+/// Every lightmap texel that wants light, structure of arrays. World space.
+struct LightmapReceivers {
+    uint32_t positions_per_texel = 1;
+    std::vector<Tile> tiles;
+    std::vector<uint32_t> texel;    ///< index over all pages
+    std::vector<uint32_t> triangle; ///< the one that covers most of the texel
+    std::vector<Frame> frame;       ///< z shading normal, x along the lightmap's u
+    std::vector<Vec3> positions;    ///< [count][positions_per_texel] ray origins, off the surface
+    std::vector<Vec3> albedo;       ///< mean reflectance over the texel
+    std::vector<float> texel_size;  ///< m
+    std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
+    uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
+    uint64_t pushed_positions = 0;
+
+    uint32_t count() const { return static_cast<uint32_t>(texel.size()); }
+    const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
+};
+
+/// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
+/// (algorithms.md 9.1, 9.2, 9.4). Adds warnings about UVs to warnings.
+LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, uint32_t positions_per_texel,
+                                 uint32_t seed, ThreadPool& pool, Progress& progress, std::vector<Warning>& warnings);
+
+} // namespace ajar

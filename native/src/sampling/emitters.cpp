@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling/emitters.h"
+
+#include "base/owen_sobol.h"
+#include "sampling/warp.h"
+
+#include <limits>
+#include <map>
+
+namespace ajar {
+
+namespace {
+
+constexpr int kEmissionSamples = 16;
+constexpr uint32_t kClusterSize = 8;
+constexpr float kLargeShare = 0.2f; ///< of the scene's area; larger emitters are left to the gather
+
+bool two_sided(const Snapshot& s, uint32_t triangle) { return !s.materials[s.triangles[triangle].material].one_sided; }
+
+float mean_emission(const Snapshot& s, uint32_t triangle) {
+    float sum = 0.0f;
+    for (int i = 0; i < kEmissionSamples; ++i) {
+        const Vec2 b = sample_triangle(owen_sobol(i, triangle));
+        sum += luminance(s.surface(triangle, b.x, b.y).emission);
+    }
+    return sum / kEmissionSamples;
+}
+
+} // namespace
+
+EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress) : scene_(scene), sky_(scene.sky) {
+    for (uint32_t i = 0; i < scene.lights.size(); ++i)
+        if (!scene.lights[i].dark()) emitters_.push_back({Kind::lamp, i});
+    collect(pool, progress);
+    drop_large();
+    triangle_density_.resize(triangles_.empty() ? 0 : scene.triangles.size(), 0.0f);
+    triangle_emitter_.resize(triangles_.empty() ? 0 : scene.triangles.size(), kNone);
+    if (!triangles_.empty()) split(0, static_cast<uint32_t>(triangles_.size()));
+    if (sky_.total() > 0.0f) {
+        sky_emitter_ = count();
+        emitters_.push_back({Kind::sky, 0});
+    }
+}
+
+void EmitterSet::collect(ThreadPool& pool, Progress& progress) {
+    std::vector<uint32_t> candidates;
+    for (uint32_t t = 0; t < scene_.triangles.size(); ++t)
+        if (scene_.materials[scene_.triangles[t].material].emits) candidates.push_back(t);
+    std::vector<float> mean(candidates.size());
+    pool.for_each((candidates.size() + 255) / 256, progress, [&](size_t block) {
+        for (size_t i = block * 256; i < std::min(candidates.size(), block * 256 + 256); ++i) mean[i] = mean_emission(scene_, candidates[i]);
+    }, false);
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        const float area = scene_.area(candidates[i]);
+        if (mean[i] * area > 0.0f) triangles_.push_back({candidates[i], area, mean[i] * area, 0.0f});
+    }
+    emissive_count_ = static_cast<uint32_t>(triangles_.size());
+}
+
+void EmitterSet::drop_large() {
+    if (triangles_.empty()) return;
+    double total = 0.0;
+    for (uint32_t t = 0; t < scene_.triangles.size(); ++t) total += scene_.area(t);
+    std::map<uint32_t, double> by_material;
+    for (const auto& t : triangles_) by_material[scene_.triangles[t.triangle].material] += t.area;
+    std::erase_if(triangles_, [&](const EmissiveTriangle& t) { return by_material[scene_.triangles[t.triangle].material] > kLargeShare * total; });
+}
+
+void EmitterSet::split(uint32_t first, uint32_t count) {
+    if (count <= kClusterSize) return add_cluster(first, count);
+    const auto centroid = [&](const EmissiveTriangle& t) { return scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f); };
+    Vec3 low(1e30f), high(-1e30f);
+    for (uint32_t i = first; i < first + count; ++i) {
+        low = glm::min(low, centroid(triangles_[i]));
+        high = glm::max(high, centroid(triangles_[i]));
+    }
+    const Vec3 size = high - low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto begin = triangles_.begin() + first;
+    // A full sort with the index as tie breaker keeps the order independent of the library.
+    std::sort(begin, begin + count, [&](const EmissiveTriangle& a, const EmissiveTriangle& b) {
+        const float ca = centroid(a)[axis], cb = centroid(b)[axis];
+        return ca != cb ? ca < cb : a.triangle < b.triangle;
+    });
+    split(first, count / 2);
+    split(first + count / 2, count - count / 2);
+}
+
+void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
+    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true};
+    Vec3 low(1e30f), high(-1e30f);
+    for (uint32_t i = first; i < first + count; ++i) {
+        EmissiveTriangle& t = triangles_[i];
+        c.power += t.power;
+        t.running = c.power;
+        c.axis += scene_.geometric_normal(t.triangle) * t.power;
+        c.two_sided |= two_sided(scene_, t.triangle);
+        for (const uint32_t v : scene_.triangles[t.triangle].vertex) low = glm::min(low, scene_.positions[v]), high = glm::max(high, scene_.positions[v]);
+    }
+    c.center = 0.5f * (low + high);
+    c.radius = 0.5f * glm::length(high - low);
+    c.axis = normalize_or(c.axis, {0, 0, 1});
+    for (uint32_t i = first; i < first + count; ++i) {
+        const EmissiveTriangle& t = triangles_[i];
+        c.flat &= glm::dot(scene_.geometric_normal(t.triangle), c.axis) > 0.999f;
+        triangle_density_[t.triangle] = t.power / (c.power * t.area);
+        triangle_emitter_[t.triangle] = this->count();
+    }
+    clusters_.push_back(c);
+    emitters_.push_back({Kind::cluster, static_cast<uint32_t>(clusters_.size() - 1)});
+}
+
+float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const {
+    const Vec3 to = c.center - p;
+    const float distance2 = glm::dot(to, to), distance = std::max(std::sqrt(distance2), 1e-6f);
+    const float cosine = std::min(1.0f, (glm::dot(to, n) + c.radius) / distance);
+    if (cosine <= 0.0f) return 0.0f;
+    float facing = 1.0f;
+    if (c.flat) {
+        const float toward = -glm::dot(to, c.axis);
+        facing = std::clamp(((c.two_sided ? std::abs(toward) : toward) + c.radius) / distance, 0.0f, 1.0f);
+    }
+    return c.power * cosine * facing / std::max(distance2, 0.25f * c.radius * c.radius);
+}
+
+float EmitterSet::importance(uint32_t e, const Vec3& p, const Vec3& n) const {
+    const Emitter& emitter = emitters_[e];
+    if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].importance(p, n);
+    if (emitter.kind == Kind::cluster) return cluster_importance(clusters_[emitter.index], p, n);
+    return 0.25f * sky_.total();
+}
+
+EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const {
+    const Emitter& emitter = emitters_[e];
+    if (emitter.kind == Kind::cluster) return sample_cluster(clusters_[emitter.index], p, u);
+    if (emitter.kind == Kind::sky) return sample_sky(u);
+    const Light& light = scene_.lights[emitter.index];
+    const LightSample s = light.sample(p, u);
+    return {s.direction, s.distance, p + s.direction * s.distance, s.weight, 0.0f, light.casts_shadow};
+}
+
+EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {
+    const float target = u.x * c.power;
+    uint32_t i = c.first;
+    while (i + 1 < c.first + c.count && triangles_[i].running <= target) ++i;
+    const EmissiveTriangle& t = triangles_[i];
+    u.x = std::clamp((target - (t.running - t.power)) / t.power, 0.0f, 0x1.fffffep-1f);
+    const Vec2 b = sample_triangle(u);
+    const Vec3 q = scene_.position(t.triangle, b.x, b.y), to = q - p;
+    const float length2 = glm::dot(to, to);
+    if (!(length2 > 0.0f)) return {};
+    const float length = std::sqrt(length2);
+    const Vec3 w = to / length, normal = scene_.geometric_normal(t.triangle);
+    float cosine = -glm::dot(w, normal);
+    if (cosine < 0.0f && two_sided(scene_, t.triangle)) cosine = -cosine;
+    if (!(cosine > 0.0f)) return {};
+    const float density = triangle_pdf(t.triangle, length, cosine);
+    const Vec3 emission = scene_.surface(t.triangle, b.x, b.y).emission;
+    return {w, length, q, emission / density, density, true};
+}
+
+EmitterSample EmitterSet::sample_sky(const Vec2& u) const {
+    float density;
+    const Vec3 w = sky_.sample(u, density);
+    if (!(density > 0.0f)) return {};
+    return {w, std::numeric_limits<float>::infinity(), Vec3(0.0f), scene_.sky.radiance(w) / density, density, true};
+}
+
+float EmitterSet::triangle_pdf(uint32_t triangle, float distance, float cosine) const {
+    return triangle_density_[triangle] * distance * distance / std::max(cosine, 1e-9f);
+}
+
+} // namespace ajar

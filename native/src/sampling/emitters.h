@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/parallel.h"
+#include "sampling/sky_sampler.h"
+#include "scene/snapshot.h"
+
+#include <vector>
+
+namespace ajar {
+
+/// One sample of an emitter from a receiver.
+struct EmitterSample {
+    Vec3 direction{0.0f};
+    float distance = 0.0f;   ///< m; infinite for sun and sky
+    Vec3 target{0.0f};       ///< point that must be seen, off its surface; unused at infinity
+    Vec3 weight{0.0f};       ///< W/m^2 facing the light, divided by the pdf inside this emitter
+    float pdf = 0.0f;        ///< per steradian inside this emitter; 0 for lamps, which rays never hit
+    bool casts_shadow = true;
+};
+
+/// Everything that next-event estimation can aim at: lamps, clusters of emissive triangles, an
+/// image sky. What fills a large part of the view (large dim emitters, plain skies) is left to
+/// the gather rays alone, which find it with less noise.
+class EmitterSet {
+public:
+    EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress);
+
+    uint32_t count() const { return static_cast<uint32_t>(emitters_.size()); }
+    bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
+    /// A lamp whose direct light is not stored.
+    bool is_primary(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].primary; }
+    /// Rough unshadowed irradiance at p with normal n; 0 only if it cannot light the surface.
+    float importance(uint32_t e, const Vec3& p, const Vec3& n) const;
+    EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
+    /// Emitter that samples this triangle, or kNone.
+    uint32_t emitter_of(uint32_t triangle) const { return triangle_emitter_.empty() ? kNone : triangle_emitter_[triangle]; }
+    /// Density per steradian with which sample() of its emitter picks a hit on triangle.
+    float triangle_pdf(uint32_t triangle, float distance, float cosine) const;
+    /// Emitter of the image sky, or kNone.
+    uint32_t sky_emitter() const { return sky_emitter_; }
+    float sky_pdf(const Vec3& w) const { return sky_.pdf(w); }
+    uint32_t emissive_triangles() const { return emissive_count_; }
+    static constexpr uint32_t kNone = 0xffffffffu;
+
+private:
+    enum class Kind { lamp, cluster, sky };
+    struct Emitter {
+        Kind kind;
+        uint32_t index;
+    };
+    struct Cluster {
+        uint32_t first, count;
+        Vec3 center;
+        float radius;
+        Vec3 axis;    ///< mean normal
+        float power;  ///< sum of luminance * area
+        bool two_sided;
+        bool flat;    ///< all normals agree with axis
+    };
+    struct EmissiveTriangle {
+        uint32_t triangle;
+        float area;
+        float power;   ///< mean luminance * area
+        float running; ///< running sum of power inside its cluster
+    };
+
+    void collect(ThreadPool& pool, Progress& progress);
+    void drop_large();
+    void split(uint32_t first, uint32_t count);
+    void add_cluster(uint32_t first, uint32_t count);
+    float cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const;
+    EmitterSample sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const;
+    EmitterSample sample_sky(const Vec2& u) const;
+
+    const Snapshot& scene_;
+    SkySampler sky_;
+    std::vector<Emitter> emitters_;
+    std::vector<Cluster> clusters_;
+    std::vector<EmissiveTriangle> triangles_;
+    std::vector<uint32_t> triangle_emitter_;
+    std::vector<float> triangle_density_; ///< pick probability / area
+    uint32_t sky_emitter_ = kNone;
+    uint32_t emissive_count_ = 0;
+};
+
+} // namespace ajar

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sampling/light_choice.h"
+
+#include "base/owen_sobol.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kFineCandidates = 32;
+constexpr uint32_t kProbes = 8;           ///< receivers of the tile that estimate importance
+constexpr uint32_t kVisibilityRays = 16;  ///< per candidate and tile
+constexpr float kVisibilityFloor = 0.05f;
+constexpr float kTileShare = 0.01f;       ///< of the tile's weight that each receiver keeps
+
+} // namespace
+
+void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile& tile) {
+    candidates_.clear();
+    slot_of_.assign(emitters_.count(), EmitterSet::kNone);
+    const uint32_t probes = std::min(kProbes, tile.count);
+    for (uint32_t e = 0; e < emitters_.count(); ++e) {
+        if (roles_ == LightRoles::stored && emitters_.is_primary(e)) continue;
+        float weight = 0.0f;
+        for (uint32_t i = 0; i < probes; ++i) {
+            const uint32_t r = tile.first + static_cast<uint32_t>(uint64_t{i} * tile.count / probes);
+            weight += emitters_.importance(e, receivers.origins(r)[0], receivers.frame[r].z);
+        }
+        candidates_.push_back({e, weight / static_cast<float>(probes)});
+    }
+    float total = 0.0f;
+    for (const Candidate& c : candidates_) total += c.weight;
+    // Probes can miss a lamp that only some receivers see; it keeps a small chance.
+    for (Candidate& c : candidates_) c.weight += 1e-3f * total / static_cast<float>(candidates_.size()) + 1e-20f;
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) { return a.weight != b.weight ? a.weight > b.weight : a.emitter < b.emitter; });
+    fine_ = std::min<uint32_t>(kFineCandidates, static_cast<uint32_t>(candidates_.size()));
+    for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
+}
+
+uint64_t LightChoice::learn_visibility(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+    visibility_.assign(fine_, 1.0f);
+    if (fine_ < 2) return 0;
+    uint64_t rays = 0;
+    for (uint32_t c = 0; c < fine_; ++c) {
+        uint32_t seen = 0, tried = 0;
+        for (uint32_t i = 0; i < kVisibilityRays; ++i) {
+            const uint32_t h = hash_combine(seed, (c << 8) | i);
+            const uint32_t r = tile.first + (h % tile.count);
+            const Vec3 p = receivers.origins(r)[i % receivers.positions_per_texel];
+            const EmitterSample s = emitters_.sample(candidates_[c].emitter, p, owen_sobol(i, h));
+            if (!(max_component(s.weight) > 0.0f) || glm::dot(s.direction, receivers.frame[r].z) <= 0.0f) continue;
+            ++tried;
+            ++rays;
+            if (!s.casts_shadow || tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle == kMiss) ++seen;
+        }
+        visibility_[c] = std::max(kVisibilityFloor, (static_cast<float>(seen) + 0.25f) / (static_cast<float>(tried) + 0.5f));
+    }
+    (void)scene;
+    return rays;
+}
+
+uint64_t LightChoice::begin(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+    find_candidates(receivers, tile);
+    if (candidates_.empty()) return 0;
+    const uint64_t rays = learn_visibility(scene, tracer, receivers, tile, seed);
+    rest_running_.clear();
+    float rest = 0.0f;
+    for (size_t i = fine_; i < candidates_.size(); ++i) rest_running_.push_back(rest += candidates_[i].weight);
+    running_.resize(size_t{tile.count} * (fine_ + 1));
+    for (uint32_t local = 0; local < tile.count; ++local) {
+        const uint32_t r = tile.first + local;
+        float* row = &running_[size_t{local} * (fine_ + 1)];
+        float sum = 0.0f;
+        for (uint32_t c = 0; c < fine_; ++c) {
+            const float here = emitters_.importance(candidates_[c].emitter, receivers.origins(r)[0], receivers.frame[r].z);
+            row[c] = sum += (here + kTileShare * candidates_[c].weight) * visibility_[c];
+        }
+        row[fine_] = sum + rest;
+    }
+    return rays;
+}
+
+uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
+    const float* row = &running_[size_t{local} * (fine_ + 1)];
+    const float total = row[fine_];
+    float target = u * total;
+    const auto slot = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(row, row + fine_ + 1, target) - row, rest_running_.empty() ? fine_ - 1 : fine_));
+    const float before = slot > 0 ? row[slot - 1] : 0.0f, weight = row[slot] - before;
+    target -= before;
+    if (slot < fine_) {
+        u = std::clamp(target / std::max(weight, 1e-30f), 0.0f, 0x1.fffffep-1f);
+        chance = weight / total;
+        return candidates_[slot].emitter;
+    }
+    const auto i = static_cast<size_t>(std::min<ptrdiff_t>(std::upper_bound(rest_running_.begin(), rest_running_.end(), target) - rest_running_.begin(), static_cast<ptrdiff_t>(rest_running_.size()) - 1));
+    const float first = i > 0 ? rest_running_[i - 1] : 0.0f, share = rest_running_[i] - first;
+    u = std::clamp((target - first) / std::max(share, 1e-30f), 0.0f, 0x1.fffffep-1f);
+    chance = share / total;
+    return candidates_[fine_ + i].emitter;
+}
+
+float LightChoice::chance(uint32_t local, uint32_t emitter) const {
+    if (candidates_.empty() || slot_of_[emitter] == EmitterSet::kNone) return 0.0f;
+    const uint32_t slot = slot_of_[emitter];
+    const float* row = &running_[size_t{local} * (fine_ + 1)];
+    if (slot < fine_) return (row[slot] - (slot > 0 ? row[slot - 1] : 0.0f)) / row[fine_];
+    const size_t i = slot - fine_;
+    return (rest_running_[i] - (i > 0 ? rest_running_[i - 1] : 0.0f)) / row[fine_];
+}
+
+} // namespace ajar

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "receiver/lightmap.h"
+#include "sampling/emitters.h"
+
+#include <vector>
+
+namespace ajar {
+
+/// Which lamps' direct light counts: all feed the bounces, static ones are stored.
+enum class LightRoles { all, stored };
+
+/// Picks emitters for the receivers of one tile in proportion to what they probably contribute:
+/// unshadowed irradiance at the receiver times the visibility that a few shadow rays of the tile
+/// found. Every emitter that could matter keeps a chance, so the estimate stays unbiased.
+class LightChoice {
+public:
+    LightChoice(const EmitterSet& emitters, LightRoles roles) : emitters_(emitters), roles_(roles) {}
+
+    /// Prepares for a tile; traces the visibility rays. Returns how many.
+    uint64_t begin(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
+    /// Nothing lights this tile.
+    bool empty() const { return candidates_.empty(); }
+    /// Emitter for u in [0,1) and the chance it had; u is rescaled to be used again.
+    uint32_t pick(uint32_t local, float& u, float& chance) const;
+    /// Chance of an emitter at a receiver of the tile, for MIS.
+    float chance(uint32_t local, uint32_t emitter) const;
+
+private:
+    struct Candidate {
+        uint32_t emitter;
+        float weight; ///< of the whole tile
+    };
+    void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
+    uint64_t learn_visibility(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
+
+    const EmitterSet& emitters_;
+    LightRoles roles_;
+    std::vector<Candidate> candidates_;   ///< strongest first; the first fine_ are weighed per receiver
+    uint32_t fine_ = 0;
+    std::vector<float> visibility_;       ///< [fine_]
+    std::vector<float> running_;          ///< [tile.count][fine_ + 1] running weights, last is the rest
+    std::vector<float> rest_running_;     ///< candidates from fine_ on
+    std::vector<uint32_t> slot_of_;       ///< per emitter: candidate index or kNone
+};
+
+} // namespace ajar

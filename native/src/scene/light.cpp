@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/light.h"
+
+#include <limits>
+
+namespace ajar {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float smoothstep(float x) {
+    const float t = std::clamp(x, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+/// Share of the intensity that a spot sends along the unit direction from light. The cosine in
+/// front is Cycles' (measured): its spots fade towards the rim even without blend.
+float spot_factor(const Light& l, const Vec3& from_light) {
+    const float cosine = glm::dot(from_light, l.axis);
+    if (cosine <= std::max(l.cone_cos, 0.0f)) return 0.0f;
+    return cosine * (l.cone_smooth > 0.0f ? smoothstep((cosine - l.cone_cos) / l.cone_smooth) : 1.0f);
+}
+
+float spread_factor(const Light& l, float cosine) {
+    if (l.spread_tan == 0.0f) return 1.0f;
+    const float tangent = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+    return std::max(0.0f, (l.spread_tan - tangent) * l.spread_scale);
+}
+
+LightSample sample_sun(const Light& l, const Vec2& u) {
+    const Vec2 d = square_to_disk(u) * l.radius;
+    const Frame frame = frame_from_normal(l.axis);
+    return {-glm::normalize(l.axis + d.x * frame.x + d.y * frame.y), kInfinity, l.intensity};
+}
+
+// Cycles shows a point lamp as a disk that faces each receiver; so does this.
+LightSample sample_ball(const Light& l, const Vec3& p, const Vec2& u) {
+    const Vec3 to_center = l.position - p;
+    const float distance2 = glm::dot(to_center, to_center);
+    if (!(distance2 > 0.0f)) return {};
+    const Vec2 d = l.radius > 0.0f ? square_to_disk(u) * l.radius : Vec2(0.0f);
+    const float center_distance = std::sqrt(distance2);
+    const Frame frame = frame_from_normal(to_center / center_distance);
+    const Vec3 offset = to_center + d.x * frame.x + d.y * frame.y;
+    const float length2 = glm::dot(offset, offset), length = std::sqrt(length2);
+    const float cosine = center_distance / length;
+    const float cone = l.type == Light::Type::spot ? spot_factor(l, -offset / length) : 1.0f;
+    const float facing = l.radius > 0.0f ? cosine : 1.0f;
+    return {offset / length, length, l.intensity * (cone * facing / length2)};
+}
+
+LightSample sample_area(const Light& l, const Vec3& p, const Vec2& u) {
+    const Vec2 d = l.type == Light::Type::ellipse ? 0.5f * square_to_disk(u) : u - 0.5f;
+    const Vec3 offset = l.position + d.x * l.edge_x + d.y * l.edge_y - p;
+    const float length2 = glm::dot(offset, offset);
+    if (!(length2 > 0.0f)) return {};
+    const float length = std::sqrt(length2);
+    const Vec3 w = offset / length;
+    const float cosine = -glm::dot(w, l.axis);
+    if (cosine <= 0.0f) return {};
+    return {w, length, l.intensity * (l.area * cosine * spread_factor(l, cosine) / length2)};
+}
+
+void set_spot(Light& l, const ajar_light_desc& d) {
+    l.cone_cos = std::cos(0.5f * std::clamp(d.spot_angle, 0.0f, kPi));
+    l.cone_smooth = (1.0f - l.cone_cos) * std::clamp(d.spot_blend, 0.0f, 1.0f);
+}
+
+void set_area(Light& l, const ajar_light_desc& d, const Affine& m) {
+    l.edge_x = Vec3(m.column(0)) * std::abs(d.size_x);
+    l.edge_y = Vec3(m.column(1)) * std::abs(d.size_y);
+    l.area = glm::length(glm::cross(l.edge_x, l.edge_y)) * (l.type == Light::Type::ellipse ? 0.25f * kPi : 1.0f);
+    l.intensity = l.area > 0.0f ? l.intensity / (4.0f * l.area) : Vec3(0.0f);
+    const float half = 0.5f * d.spread;
+    if (half >= 0.5f * kPi - 1e-5f) return;
+    const float limited = std::max(half, 0.5e-3f);
+    l.spread_tan = std::tan(limited);
+    // In double: tan x - x cancels for narrow beams.
+    l.spread_scale = static_cast<float>(1.0 / (std::tan(double(limited)) - double(limited)));
+}
+
+} // namespace
+
+Vec2 square_to_disk(const Vec2& u) {
+    const float a = 2.0f * u.x - 1.0f, b = 2.0f * u.y - 1.0f;
+    if (a == 0.0f && b == 0.0f) return Vec2(0.0f);
+    const bool wide = std::abs(a) > std::abs(b);
+    const float r = wide ? a : b;
+    const float phi = wide ? 0.25f * kPi * (b / a) : 0.5f * kPi - 0.25f * kPi * (a / b);
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+LightSample Light::sample(const Vec3& p, const Vec2& u) const {
+    switch (type) {
+    case Type::sun: return sample_sun(*this, u);
+    case Type::point:
+    case Type::spot: return sample_ball(*this, p, u);
+    default: return sample_area(*this, p, u);
+    }
+}
+
+float Light::importance(const Vec3& p, const Vec3& n) const {
+    const float strength = luminance(intensity);
+    if (type == Type::sun) return strength * std::max(0.0f, -glm::dot(axis, n) + radius);
+    const Vec3 to_light = position - p;
+    const float extent = type == Type::point || type == Type::spot ? radius : 0.5f * glm::length(edge_x) + 0.5f * glm::length(edge_y);
+    const float distance2 = glm::dot(to_light, to_light), distance = std::sqrt(distance2);
+    // The lamp's nearest part may stand higher over the horizon than its centre does.
+    const float cosine = std::min(1.0f, (glm::dot(to_light, n) + extent) / std::max(distance, 1e-6f));
+    if (cosine <= 0.0f) return 0.0f;
+    const float falloff = 1.0f / std::max(distance2 + 0.25f * extent * extent, 1e-12f);
+    if (type == Type::spot && distance > 2.0f * radius && spot_factor(*this, -to_light / distance) == 0.0f && radius == 0.0f) return 0.0f;
+    if (type == Type::point || type == Type::spot) return strength * cosine * falloff;
+    const float emitter_cosine = (-glm::dot(to_light, axis) + extent) / std::max(distance, 1e-6f);
+    return strength * area * cosine * std::clamp(emitter_cosine, 0.0f, 1.0f) * falloff;
+}
+
+void Light::move(const DVec3& offset) {
+    exact_position += offset;
+    position = Vec3(exact_position);
+}
+
+Light make_light(const ajar_light_desc& d, const std::string& name, const Affine& m) {
+    static constexpr Light::Type kTypes[] = {Light::Type::point, Light::Type::spot, Light::Type::sun, Light::Type::rectangle, Light::Type::ellipse};
+    Light l;
+    l.name = name;
+    l.type = kTypes[d.type];
+    l.primary = d.role == AJAR_ROLE_PRIMARY;
+    l.casts_shadow = d.casts_shadow != 0;
+    l.exact_position = m.column(3);
+    l.position = Vec3(l.exact_position);
+    l.axis = -normalize_or(Vec3(m.column(2)), {0, 0, 1});
+    // Negative lights are a renderer's trick; a package stores no negative irradiance.
+    l.intensity = glm::max(Vec3(d.color[0], d.color[1], d.color[2]) * d.energy, Vec3(0.0f));
+    switch (l.type) {
+    case Light::Type::spot: set_spot(l, d); [[fallthrough]];
+    case Light::Type::point:
+        l.radius = std::max(d.radius, 0.0f);
+        l.intensity *= 0.25f * kInvPi;
+        break;
+    case Light::Type::sun: l.radius = std::tan(0.5f * std::clamp(d.sun_angle, 0.0f, 0.99f * kPi)); break;
+    default: set_area(l, d, m); break;
+    }
+    return l;
+}
+
+} // namespace ajar

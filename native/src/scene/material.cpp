@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/material.h"
+
+#include "scene/snapshot.h"
+
+#include <array>
+
+namespace ajar {
+
+namespace {
+
+// Directional-albedo integrals A and B of the split-sum Fresnel, tabulated at roughness 0, .1 .. 1
+// (algorithms.md 11.2; at 0 they follow from the mirror: A = 1 - 1/21, B = 1/21).
+constexpr std::array<float, 11> kTableA = {0.9524f, 0.952f, 0.951f, 0.941f, 0.914f, 0.864f,
+                                           0.790f,  0.699f, 0.598f, 0.498f, 0.406f};
+constexpr std::array<float, 11> kTableB = {0.0476f, 0.0471f, 0.0431f, 0.0354f, 0.0265f, 0.0187f,
+                                           0.0127f, 0.0086f, 0.0058f, 0.0040f, 0.0028f};
+
+float lookup(const std::array<float, 11>& table, float roughness) {
+    const float x = std::clamp(roughness, 0.0f, 1.0f) * 10.0f;
+    const int i = std::min(static_cast<int>(x), 9);
+    return table[i] + (table[i + 1] - table[i]) * (x - static_cast<float>(i));
+}
+
+Vec2 corner_uv(const Mesh& mesh, uint32_t layer, const MeshPoint& at) {
+    if (layer >= mesh.uv_layers.size()) return Vec2(0.0f);
+    const Vec2* c = &mesh.uv_layers[layer][3 * static_cast<size_t>(at.triangle)];
+    return c[0] * (1.0f - at.u - at.v) + c[1] * at.u + c[2] * at.v;
+}
+
+Vec4 corner_color(const Mesh& mesh, uint32_t layer, const MeshPoint& at) {
+    if (layer >= mesh.color_layers.size()) return Vec4(1.0f);
+    const Vec4* c = &mesh.color_layers[layer][3 * static_cast<size_t>(at.triangle)];
+    return c[0] * (1.0f - at.u - at.v) + c[1] * at.u + c[2] * at.v;
+}
+
+Vec3 pick(const Vec4& v, uint32_t channel) {
+    switch (channel) {
+    case AJAR_CHANNEL_R: return Vec3(v.x);
+    case AJAR_CHANNEL_G: return Vec3(v.y);
+    case AJAR_CHANNEL_B: return Vec3(v.z);
+    case AJAR_CHANNEL_A: return Vec3(v.w);
+    default: return Vec3(v);
+    }
+}
+
+Vec3 evaluate(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
+    const Mesh& mesh = scene.meshes[at.mesh];
+    Vec3 result(in.value[0], in.value[1], in.value[2]);
+    if (in.texture != AJAR_NONE) {
+        const Vec2 uv = corner_uv(mesh, in.uv_layer, at);
+        const float* m = in.uv_transform;
+        const Vec2 mapped(m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]);
+        result *= pick(scene.textures[in.texture].sample(mapped), in.channel);
+    }
+    if (in.color_layer != AJAR_NONE) result *= pick(corner_color(mesh, in.color_layer, at), in.channel);
+    return in.invert != 0 ? Vec3(1.0f) - result : result;
+}
+
+float weight(const Snapshot& scene, const ajar_closure& c, const MeshPoint& at) {
+    const float a = std::clamp(evaluate(scene, c.weight_a, at).x, 0.0f, 1.0f);
+    return a == 0.0f ? 0.0f : a * std::clamp(evaluate(scene, c.weight_b, at).x, 0.0f, 1.0f);
+}
+
+Vec3 unit(const Vec3& v) { return glm::clamp(v, Vec3(0.0f), Vec3(1.0f)); }
+
+void add_closure(const Snapshot& scene, const ajar_closure& c, const MeshPoint& at, SurfaceSample& out) {
+    const float w = weight(scene, c, at);
+    if (w == 0.0f) return;
+    const Vec3 color = evaluate(scene, c.color, at);
+    switch (c.type) {
+    case AJAR_CLOSURE_DIFFUSE: out.reflectance += w * unit(color); break;
+    case AJAR_CLOSURE_PRINCIPLED:
+        out.reflectance += w * principled_albedo(unit(color), std::clamp(evaluate(scene, c.metallic, at).x, 0.0f, 1.0f),
+                                                 evaluate(scene, c.roughness, at).x, c.specular);
+        break;
+    case AJAR_CLOSURE_EMISSION:
+        out.emission += w * glm::max(color * evaluate(scene, c.strength, at).x, Vec3(0.0f));
+        break;
+    default: out.transmittance += w * unit(color); break;
+    }
+}
+
+} // namespace
+
+Vec3 specular_albedo(const Vec3& f0, float roughness) {
+    const float a = lookup(kTableA, roughness), b = lookup(kTableB, roughness);
+    const float average = a + b;
+    return (f0 * a + b) * (Vec3(1.0f) + f0 * ((1.0f - average) / average));
+}
+
+Vec3 principled_albedo(const Vec3& base, float metallic, float roughness, float specular) {
+    const Vec3 gloss = specular_albedo(Vec3(0.08f * std::max(specular, 0.0f)), roughness);
+    const Vec3 dielectric = gloss + base * (Vec3(1.0f) - gloss);
+    return glm::mix(dielectric, specular_albedo(base, roughness), metallic);
+}
+
+SurfaceSample Material::sample(const Snapshot& scene, const MeshPoint& at) const {
+    SurfaceSample out;
+    for (const ajar_closure& c : closures) add_closure(scene, c, at, out);
+    out.reflectance = glm::clamp(out.reflectance, Vec3(0.0f), Vec3(kMaxReflectance));
+    out.transmittance = unit(out.transmittance);
+    if (!is_finite(out.emission)) out.emission = Vec3(0.0f);
+    return out;
+}
+
+} // namespace ajar

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/snapshot.h"
+
+namespace ajar {
+
+uint32_t Snapshot::ray_mask(const Triangle& t) const {
+    const uint32_t visibility = instances[t.instance].visibility;
+    const uint32_t shadow = materials[t.material].transmits ? kMaskShadowTransmissive : kMaskShadowOpaque;
+    return (visibility & AJAR_VISIBLE_GATHER ? kMaskGather : 0u) | (visibility & AJAR_VISIBLE_SHADOW ? shadow : 0u);
+}
+
+Vec3 Snapshot::position(uint32_t triangle, float u, float v) const {
+    const Triangle& t = triangles[triangle];
+    const Vec3 a = positions[t.vertex[0]];
+    return a + (positions[t.vertex[1]] - a) * u + (positions[t.vertex[2]] - a) * v;
+}
+
+Vec3 Snapshot::geometric_normal(uint32_t triangle) const {
+    const Triangle& t = triangles[triangle];
+    const DVec3 a(positions[t.vertex[0]]), b(positions[t.vertex[1]]), c(positions[t.vertex[2]]);
+    const DVec3 n = glm::cross(b - a, c - a);
+    const double length = glm::length(n);
+    return length > 0.0 ? Vec3(n * ((t.mirrored ? -1.0 : 1.0) / length)) : Vec3(0.0f, 0.0f, 1.0f);
+}
+
+float Snapshot::area(uint32_t triangle) const {
+    const Triangle& t = triangles[triangle];
+    const DVec3 a(positions[t.vertex[0]]), b(positions[t.vertex[1]]), c(positions[t.vertex[2]]);
+    return static_cast<float>(0.5 * glm::length(glm::cross(b - a, c - a)));
+}
+
+Vec3 Snapshot::corner_normal(uint32_t triangle, int corner) const {
+    const Triangle& t = triangles[triangle];
+    const Instance& instance = instances[t.instance];
+    const Mesh& mesh = meshes[instance.mesh];
+    const Vec3 flat = geometric_normal(triangle);
+    if (mesh.corner_normals.empty()) return flat;
+    const DVec3 local(mesh.corner_normals[3 * static_cast<size_t>(t.source) + corner]);
+    const DVec3 world = instance.transform.normal(local) * (t.mirrored ? -1.0 : 1.0);
+    const double length = glm::length(world);
+    return length > 0.0 && std::isfinite(length) ? Vec3(world / length) : flat;
+}
+
+Vec2 Snapshot::lightmap_uv(uint32_t triangle, int corner) const {
+    const Triangle& t = triangles[triangle];
+    const Instance& instance = instances[t.instance];
+    const Page& page = pages[instance.page];
+    const Vec2 uv = meshes[instance.mesh].uv_layers[instance.lightmap_layer][3 * static_cast<size_t>(t.source) + corner];
+    return (uv * instance.uv_scale + instance.uv_offset) * Vec2(page.width, page.height);
+}
+
+} // namespace ajar

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/error.h"
+#include "scene/light.h"
+#include "scene/material.h"
+#include "scene/sky.h"
+#include "scene/texture.h"
+
+#include <string>
+#include <vector>
+
+namespace ajar {
+
+/// Triangle mesh in local space; corner arrays hold 3 entries per triangle.
+struct Mesh {
+    std::string name;
+    std::vector<Vec3> positions;
+    std::vector<uint32_t> corner_vertex;
+    std::vector<Vec3> corner_normals; ///< empty: flat shaded
+    std::vector<uint32_t> triangle_slot; ///< empty: slot 0
+    std::vector<std::vector<Vec2>> uv_layers;
+    std::vector<std::vector<Vec4>> color_layers;
+
+    uint32_t triangle_count() const { return static_cast<uint32_t>(corner_vertex.size() / 3); }
+};
+
+struct Instance {
+    std::string name;
+    uint32_t mesh = 0;
+    Affine transform;
+    std::vector<uint32_t> materials; ///< never empty after commit
+    bool lightmapped = false;
+    uint32_t visibility = AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW;
+    uint32_t lightmap_layer = AJAR_NONE;
+    uint32_t page = AJAR_NONE;
+    Vec2 uv_scale{1.0f}, uv_offset{0.0f};
+};
+
+/// One world-space triangle of the flattened scene.
+struct Triangle {
+    uint32_t vertex[3];  ///< into Snapshot::positions
+    uint32_t instance;
+    uint32_t source;     ///< triangle of the instance's mesh
+    uint32_t material;
+    bool mirrored;       ///< the instance turns the winding: the normal is minus the cross product
+};
+
+/// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
+enum RayMask : uint32_t { kMaskGather = 1, kMaskShadowOpaque = 2, kMaskShadowTransmissive = 4 };
+
+struct Page {
+    uint32_t width = 0, height = 0;
+    uint64_t first_texel = 0; ///< offset into arrays over all pages' texels
+};
+
+/// The scene as the baker sees it. Immutable after commit; everything below relies on its checks.
+/// World positions are relative to origin, so that floats resolve detail far from zero.
+struct Snapshot {
+    std::string name;
+    std::vector<Texture> textures;
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;
+    std::vector<Page> pages;
+    Sky sky;
+
+    DVec3 origin{0.0};
+    std::vector<Vec3> positions;
+    std::vector<Triangle> triangles;
+    Vec3 bounds_min{0.0f}, bounds_max{0.0f};
+    std::vector<Warning> warnings;
+
+    uint64_t texel_count() const { return pages.empty() ? 0 : pages.back().first_texel + uint64_t{pages.back().width} * pages.back().height; }
+    float diagonal() const { return glm::length(bounds_max - bounds_min); }
+
+    /// RayMask bits of a triangle. Triangles are stored grouped by it.
+    uint32_t ray_mask(const Triangle& t) const;
+    const Instance& instance_of(uint32_t triangle) const { return instances[triangles[triangle].instance]; }
+    MeshPoint mesh_point(uint32_t triangle, float u, float v) const {
+        return {instance_of(triangle).mesh, triangles[triangle].source, u, v};
+    }
+    SurfaceSample surface(uint32_t triangle, float u, float v) const {
+        return materials[triangles[triangle].material].sample(*this, mesh_point(triangle, u, v));
+    }
+    Vec3 position(uint32_t triangle, float u, float v) const;
+    /// Unit geometric normal; (0,0,1) never occurs for a kept triangle by accident: they have area.
+    Vec3 geometric_normal(uint32_t triangle) const;
+    float area(uint32_t triangle) const;
+    /// Unit shading normal of corner 0..2 in world space.
+    Vec3 corner_normal(uint32_t triangle, int corner) const;
+    /// Lightmap UV of a corner in texels of its page.
+    Vec2 lightmap_uv(uint32_t triangle, int corner) const;
+};
+
+} // namespace ajar

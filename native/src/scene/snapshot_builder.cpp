@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/snapshot_builder.h"
+
+#include <cstring>
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kMaxTextureSize = 32768, kMaxPageSize = 16384;
+
+void require(bool condition, ajar_result code, const std::string& message, const std::string& culprit) {
+    if (!condition) throw Error(code, message, culprit);
+}
+
+std::string name_of(const char* name, const char* fallback) { return name != nullptr ? name : fallback; }
+
+/// Floats that are not finite become 0; returns how many.
+template <class T> size_t clean(std::vector<T>& values) {
+    size_t bad = 0;
+    auto* f = reinterpret_cast<float*>(values.data());
+    for (size_t i = 0; i < values.size() * sizeof(T) / sizeof(float); ++i) {
+        if (std::isfinite(f[i])) continue;
+        f[i] = 0.0f;
+        ++bad;
+    }
+    return bad;
+}
+
+template <class T> std::vector<T> copy_as(const float* source, size_t count) {
+    std::vector<T> out(count);
+    if (count != 0) std::memcpy(static_cast<void*>(out.data()), source, count * sizeof(T));
+    return out;
+}
+
+Affine affine_of(const double* m, const std::string& culprit) {
+    Affine a;
+    for (int i = 0; i < 12; ++i) {
+        require(std::isfinite(m[i]), AJAR_ERROR_INPUT, "its transform is not finite; clear or fix its transform", culprit);
+        a.m[i] = m[i];
+    }
+    return a;
+}
+
+bool may_be_positive(const ajar_input& in) {
+    return in.invert != 0 || in.value[0] > 0.0f || in.value[1] > 0.0f || in.value[2] > 0.0f;
+}
+
+bool has_weight(const ajar_closure& c) { return may_be_positive(c.weight_a) && may_be_positive(c.weight_b); }
+
+bool closure_emits(const ajar_closure& c) {
+    return c.type == AJAR_CLOSURE_EMISSION && has_weight(c) && may_be_positive(c.color) && may_be_positive(c.strength);
+}
+
+bool closure_transmits(const ajar_closure& c) {
+    return c.type == AJAR_CLOSURE_TRANSPARENT && has_weight(c) && may_be_positive(c.color);
+}
+
+size_t clean_input(ajar_input& in) {
+    size_t bad = 0;
+    for (float& v : in.value)
+        if (!std::isfinite(v)) v = 0.0f, ++bad;
+    for (float& v : in.uv_transform)
+        if (!std::isfinite(v)) v = 0.0f, ++bad;
+    return bad;
+}
+
+void check_input(const ajar_input& in, const std::string& material, size_t texture_count) {
+    require(in.texture == AJAR_NONE || in.texture < texture_count, AJAR_ERROR_ARGUMENT, "names a texture that was not added", material);
+    require(in.channel <= AJAR_CHANNEL_A, AJAR_ERROR_ARGUMENT, "has an input with an unknown channel", material);
+}
+
+} // namespace
+
+SnapshotBuilder::SnapshotBuilder(std::string name) : snapshot_(std::make_shared<Snapshot>()) { snapshot_->name = std::move(name); }
+
+void SnapshotBuilder::warn(const std::string& culprit, const std::string& text) { snapshot_->warnings.push_back({culprit, text}); }
+
+uint32_t SnapshotBuilder::add_texture(const ajar_texture_desc& d) {
+    const std::string name = name_of(d.name, "image");
+    require(d.width > 0 && d.height > 0 && d.width <= kMaxTextureSize && d.height <= kMaxTextureSize, AJAR_ERROR_ARGUMENT, "image size is 0 or above 32768", name);
+    require(d.texels != nullptr && d.texel <= AJAR_TEXEL_F32 && d.color <= AJAR_COLOR_SRGB && d.extend <= AJAR_EXTEND_CLIP, AJAR_ERROR_ARGUMENT, "image description is incomplete", name);
+    const size_t scalars = size_t{4} * d.width * d.height;
+    const size_t bytes = scalars * (d.texel == AJAR_TEXEL_F32 ? sizeof(float) : 1);
+    require(d.texel_bytes == bytes, AJAR_ERROR_ARGUMENT, "texel_bytes does not match the image size", name);
+    Texture t;
+    t.name = name;
+    t.width = d.width;
+    t.height = d.height;
+    t.extend = static_cast<Texture::Extend>(d.extend);
+    t.nearest = d.nearest != 0;
+    t.srgb = d.color == AJAR_COLOR_SRGB;
+    if (d.texel == AJAR_TEXEL_F32) {
+        t.floats = copy_as<float>(static_cast<const float*>(d.texels), scalars);
+        if (const size_t bad = clean(t.floats)) warn(name, std::to_string(bad) + " texels are not finite and count as 0");
+    } else {
+        const auto* b = static_cast<const uint8_t*>(d.texels);
+        t.bytes.assign(b, b + scalars);
+    }
+    snapshot_->textures.push_back(std::move(t));
+    return static_cast<uint32_t>(snapshot_->textures.size() - 1);
+}
+
+uint32_t SnapshotBuilder::add_material(const ajar_material_desc& d) {
+    Material m;
+    m.name = name_of(d.name, "material");
+    require(d.closure_count <= AJAR_MAX_CLOSURES && (d.closure_count == 0 || d.closures != nullptr), AJAR_ERROR_ARGUMENT, "has more closures than AJAR_MAX_CLOSURES, or none given", m.name);
+    m.closures.assign(d.closures, d.closures + d.closure_count);
+    m.one_sided = d.one_sided != 0;
+    size_t bad = 0;
+    for (ajar_closure& c : m.closures) {
+        require(c.type <= AJAR_CLOSURE_TRANSPARENT, AJAR_ERROR_ARGUMENT, "has a closure of unknown type", m.name);
+        for (ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength, &c.metallic, &c.roughness}) bad += clean_input(*in);
+        if (!std::isfinite(c.specular)) c.specular = 0.0f, ++bad;
+        m.emits |= closure_emits(c);
+        m.transmits |= closure_transmits(c);
+    }
+    if (bad != 0) warn(m.name, std::to_string(bad) + " material values are not finite and count as 0");
+    snapshot_->materials.push_back(std::move(m));
+    return static_cast<uint32_t>(snapshot_->materials.size() - 1);
+}
+
+uint32_t SnapshotBuilder::add_mesh(const ajar_mesh_desc& d) {
+    Mesh m;
+    m.name = name_of(d.name, "mesh");
+    const size_t corners = size_t{3} * d.triangle_count;
+    require(d.triangle_count < (1u << 28), AJAR_ERROR_ARGUMENT, "has too many triangles", m.name);
+    require((d.vertex_count == 0 || d.positions != nullptr) && (corners == 0 || d.corner_vertex != nullptr), AJAR_ERROR_ARGUMENT, "positions or corner_vertex is missing", m.name);
+    require((d.uv_layer_count == 0 || d.uv_layers != nullptr) && (d.color_layer_count == 0 || d.color_layers != nullptr), AJAR_ERROR_ARGUMENT, "layer array is missing", m.name);
+    m.positions = copy_as<Vec3>(d.positions, d.vertex_count);
+    m.corner_vertex.assign(d.corner_vertex, d.corner_vertex + corners);
+    for (const uint32_t v : m.corner_vertex) require(v < d.vertex_count, AJAR_ERROR_ARGUMENT, "a corner names a vertex that does not exist", m.name);
+    if (d.corner_normals != nullptr) m.corner_normals = copy_as<Vec3>(d.corner_normals, corners);
+    if (d.triangle_slot != nullptr) m.triangle_slot.assign(d.triangle_slot, d.triangle_slot + d.triangle_count);
+    size_t bad = clean(m.corner_normals);
+    for (uint32_t i = 0; i < d.uv_layer_count; ++i) {
+        require(d.uv_layers[i] != nullptr || corners == 0, AJAR_ERROR_ARGUMENT, "a UV layer is null", m.name);
+        bad += clean(m.uv_layers.emplace_back(copy_as<Vec2>(d.uv_layers[i], corners)));
+    }
+    for (uint32_t i = 0; i < d.color_layer_count; ++i) {
+        require(d.color_layers[i] != nullptr || corners == 0, AJAR_ERROR_ARGUMENT, "a colour layer is null", m.name);
+        bad += clean(m.color_layers.emplace_back(copy_as<Vec4>(d.color_layers[i], corners)));
+    }
+    if (bad != 0) warn(m.name, std::to_string(bad) + " normals, UVs or colours are not finite and count as 0");
+    snapshot_->meshes.push_back(std::move(m));
+    return static_cast<uint32_t>(snapshot_->meshes.size() - 1);
+}
+
+uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
+    Instance i;
+    i.name = name_of(d.name, "object");
+    require(d.mesh < snapshot_->meshes.size(), AJAR_ERROR_ARGUMENT, "names a mesh that was not added", i.name);
+    require(d.material_count == 0 || d.materials != nullptr, AJAR_ERROR_ARGUMENT, "material list is missing", i.name);
+    require(d.surface <= AJAR_SURFACE_OCCLUDER, AJAR_ERROR_ARGUMENT, "unknown kind of surface", i.name);
+    i.mesh = d.mesh;
+    i.transform = affine_of(d.transform, i.name);
+    i.materials.assign(d.materials, d.materials + d.material_count);
+    i.lightmapped = d.surface == AJAR_SURFACE_LIGHTMAP;
+    i.visibility = d.visibility;
+    i.lightmap_layer = d.lightmap_layer;
+    i.page = d.page;
+    i.uv_scale = {d.uv_scale[0], d.uv_scale[1]};
+    i.uv_offset = {d.uv_offset[0], d.uv_offset[1]};
+    require(is_finite(Vec3(i.uv_scale, i.uv_offset.x)) && std::isfinite(i.uv_offset.y), AJAR_ERROR_ARGUMENT, "lightmap rectangle is not finite", i.name);
+    snapshot_->instances.push_back(std::move(i));
+    return static_cast<uint32_t>(snapshot_->instances.size() - 1);
+}
+
+uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
+    const std::string name = name_of(d.name, "light");
+    require(d.type <= AJAR_LIGHT_AREA_ELLIPSE && d.role <= AJAR_ROLE_STATIC, AJAR_ERROR_ARGUMENT, "unknown type or role of light", name);
+    for (const float v : {d.color[0], d.color[1], d.color[2], d.energy, d.radius, d.spot_angle, d.spot_blend, d.sun_angle, d.size_x, d.size_y, d.spread})
+        require(std::isfinite(v), AJAR_ERROR_INPUT, "has a value that is not finite; set its power, colour and size again", name);
+    snapshot_->lights.push_back(make_light(d, name, affine_of(d.transform, name)));
+    return static_cast<uint32_t>(snapshot_->lights.size() - 1);
+}
+
+uint32_t SnapshotBuilder::add_page(uint32_t width, uint32_t height) {
+    require(width > 0 && height > 0 && width <= kMaxPageSize && height <= kMaxPageSize, AJAR_ERROR_ARGUMENT, "page size is 0 or above 16384", "page");
+    const uint64_t first = snapshot_->texel_count();
+    require(first + uint64_t{width} * height < 0xffffffffull, AJAR_ERROR_INPUT, "the pages hold more than 4 billion texels; lower the texel density", "page");
+    snapshot_->pages.push_back({width, height, first});
+    return static_cast<uint32_t>(snapshot_->pages.size() - 1);
+}
+
+void SnapshotBuilder::set_sky(const ajar_sky_desc& d) {
+    require(d.type <= AJAR_SKY_EQUIRECT, AJAR_ERROR_ARGUMENT, "unknown type of sky", "world");
+    Sky sky;
+    sky.present = d.type != AJAR_SKY_NONE;
+    sky.color = glm::max(Vec3(d.color[0], d.color[1], d.color[2]), Vec3(0.0f));
+    require(is_finite(sky.color), AJAR_ERROR_INPUT, "sky colour is not finite; set its colour and strength again", "world");
+    if (d.type == AJAR_SKY_EQUIRECT) {
+        require(d.texture < snapshot_->textures.size(), AJAR_ERROR_ARGUMENT, "sky names a texture that was not added", "world");
+        sky.has_image = true;
+        sky.image = snapshot_->textures[d.texture];
+    }
+    snapshot_->sky = std::move(sky);
+}
+
+void SnapshotBuilder::check_materials() const {
+    for (const Material& m : snapshot_->materials)
+        for (const ajar_closure& c : m.closures)
+            for (const ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength, &c.metallic, &c.roughness})
+                check_input(*in, m.name, snapshot_->textures.size());
+}
+
+void SnapshotBuilder::check_instance(const Instance& i) const {
+    for (const uint32_t m : i.materials) require(m < snapshot_->materials.size(), AJAR_ERROR_ARGUMENT, "names a material that was not added", i.name);
+    if (!i.lightmapped) return;
+    require(i.page < snapshot_->pages.size(), AJAR_ERROR_ARGUMENT, "names a lightmap page that was not added", i.name);
+    require(i.lightmap_layer < snapshot_->meshes[i.mesh].uv_layers.size(), AJAR_ERROR_INPUT, "has no lightmap UVs; run Prepare UVs or mark it as occluder", i.name);
+}
+
+// Floats near 0 are finest, so the scene is moved there in double precision first (algorithms.md 9.8).
+void SnapshotBuilder::choose_origin() {
+    DVec3 low(1e300), high(-1e300);
+    const Instance* far = nullptr;
+    double farthest = -1.0;
+    for (const Instance& i : snapshot_->instances) {
+        const Mesh& mesh = snapshot_->meshes[i.mesh];
+        for (const Vec3& p : mesh.positions) {
+            if (!is_finite(p)) continue;
+            const DVec3 w = i.transform.point(DVec3(p));
+            low = glm::min(low, w);
+            high = glm::max(high, w);
+            const double reach = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
+            if (reach > farthest) farthest = reach, far = &i;
+        }
+    }
+    if (far == nullptr) return;
+    const double half = 0.5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    require(half * 0x1p-23 < 1e-3, AJAR_ERROR_INPUT, "the scene is so wide that millimetres are lost; move this object closer or bake the scene in parts", far->name);
+    snapshot_->origin = 0.5 * (low + high);
+    snapshot_->bounds_min = Vec3(low - snapshot_->origin);
+    snapshot_->bounds_max = Vec3(high - snapshot_->origin);
+}
+
+void SnapshotBuilder::flatten(uint32_t index) {
+    Snapshot& s = *snapshot_;
+    const Instance& i = s.instances[index];
+    const Mesh& mesh = s.meshes[i.mesh];
+    const auto base = static_cast<uint32_t>(s.positions.size());
+    require(s.positions.size() + mesh.positions.size() < 0xffffffffull, AJAR_ERROR_INPUT, "the scene has more than 4 billion vertices", i.name);
+    for (const Vec3& p : mesh.positions) s.positions.push_back(Vec3(i.transform.point(DVec3(p)) - s.origin));
+    const bool mirrored = i.transform.determinant() < 0.0;
+    size_t broken = 0, flat = 0;
+    for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+        const uint32_t* v = &mesh.corner_vertex[3 * size_t{t}];
+        if (!is_finite(mesh.positions[v[0]]) || !is_finite(mesh.positions[v[1]]) || !is_finite(mesh.positions[v[2]])) {
+            ++broken;
+            continue;
+        }
+        const uint32_t slot = mesh.triangle_slot.empty() ? 0 : mesh.triangle_slot[t];
+        const uint32_t material = i.materials[std::min<size_t>(slot, i.materials.size() - 1)];
+        s.triangles.push_back({{base + v[0], base + v[1], base + v[2]}, index, t, material, mirrored});
+        if (!(s.area(static_cast<uint32_t>(s.triangles.size() - 1)) > 0.0f)) s.triangles.pop_back(), ++flat;
+    }
+    for (size_t p = base; p < s.positions.size(); ++p)
+        if (!is_finite(s.positions[p])) s.positions[p] = Vec3(0.0f);
+    if (broken != 0) warn(i.name, std::to_string(broken) + " triangles have a vertex that is not finite and are left out; fix or delete those vertices");
+    if (flat != 0) warn(i.name, std::to_string(flat) + " triangles have no area and are left out");
+}
+
+// Rays of different purposes see different groups; contiguous groups spare a lookup per hit.
+void SnapshotBuilder::group_triangles() {
+    Snapshot& s = *snapshot_;
+    const auto key = [&](const Triangle& t) { return s.ray_mask(t); };
+    std::stable_sort(s.triangles.begin(), s.triangles.end(), [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
+}
+
+void SnapshotBuilder::commit() {
+    require(!committed_, AJAR_ERROR_STATE, "the scene is committed already", snapshot_->name);
+    check_materials();
+    uint32_t fallback = AJAR_NONE;
+    for (Instance& i : snapshot_->instances) {
+        if (i.materials.empty()) {
+            if (fallback == AJAR_NONE) {
+                snapshot_->materials.push_back({"(none)", {}, false, false, false});
+                fallback = static_cast<uint32_t>(snapshot_->materials.size() - 1);
+                warn(i.name, "has no material and counts as black; give it a material");
+            }
+            i.materials.push_back(fallback);
+        }
+        check_instance(i);
+    }
+    choose_origin();
+    for (uint32_t i = 0; i < snapshot_->instances.size(); ++i) flatten(i);
+    group_triangles();
+    for (Light& l : snapshot_->lights) l.move(-snapshot_->origin);
+    committed_ = true;
+}
+
+} // namespace ajar

@@ -1,0 +1,735 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Extraction: small scenes built here, read back from the snapshot they give.
+
+    blender -b --factory-startup --python-exit-code 1 -P tests/blender/bl_extract.py [-- NAME...]
+"""
+import importlib
+import math
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+import bpy
+import numpy as np
+
+ROOT = Path(os.environ.get("AJAR_ROOT", Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(ROOT))
+MODULE = os.environ.get("AJAR_ADDON_MODULE", "blender_addon")
+snapshot = importlib.import_module(MODULE + ".extract.snapshot")
+layout_module = importlib.import_module(MODULE + ".extract.layout")
+world_module = importlib.import_module(MODULE + ".extract.world")
+color_module = importlib.import_module(MODULE + ".extract.node_color")
+model = importlib.import_module(MODULE + ".model")
+Reader = importlib.import_module(MODULE + ".bridge.snapshot_io").Reader
+
+QUAD = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
+
+
+# ---- helpers --------------------------------------------------------------------------------
+
+class Shot:
+    """A snapshot read back: data, result, and arrays by reference."""
+
+    def __init__(self, layout=None):
+        with tempfile.TemporaryDirectory() as folder:
+            self.result = snapshot.write_snapshot(bpy.context, folder, model.engine_settings("DRAFT"), layout)
+            self._reader = Reader(folder)
+            self.data = self._reader.data
+            self.arrays = {}
+            for mesh in self.data["meshes"]:
+                mesh["uv_layers"] = [self.array(r, "f32", 3, 2) for r in mesh["uv_layers"]]
+                mesh["color_layers"] = [self.array(r, "f32", 3, 4) for r in mesh["color_layers"]]
+                mesh["positions"] = self.array(mesh["positions"], "f32", 3)
+                mesh["corner_vertex"] = self.array(mesh["corner_vertex"], "u32", 3)
+                if mesh["corner_normals"]:
+                    mesh["corner_normals"] = self.array(mesh["corner_normals"], "f32", 3, 3)
+            for texture in self.data["textures"]:
+                kind = texture["texel"]
+                texture["texels"] = self.array(texture["texels"], kind, texture["width"], 4)
+            self._reader.close()
+
+    def array(self, reference, kind, *shape):
+        return np.array(self._reader.values(reference, kind)).reshape(-1, *shape)
+
+    def instance(self, name):
+        return next(i for i in self.data["instances"] if i["name"] == name)
+
+    def mesh(self, name):
+        return self.data["meshes"][self.instance(name)["mesh"]]
+
+    def material(self, name, slot=0):
+        return self.data["materials"][self.instance(name)["materials"][slot]]
+
+    def closures(self, name, slot=0):
+        return self.material(name, slot)["closures"]
+
+    def warned(self, culprit, part):
+        return any(c == culprit and part in t for c, t in self.result.warnings)
+
+
+def reset():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    enabled = os.environ.get("AJAR_ADDON_MODULE")
+    if enabled:
+        bpy.ops.preferences.addon_enable(module=enabled)
+
+
+def add(name, data=None, **options):
+    obj = bpy.data.objects.new(name, data)
+    for key, value in options.items():
+        setattr(obj, key, value)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def quad_mesh(name, uv=True):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(QUAD[0], [], QUAD[1])
+    if uv:
+        layer = mesh.uv_layers.new(name="UVMap")
+        for loop in mesh.loops:
+            layer.data[loop.index].uv = mesh.vertices[loop.vertex_index].co[:2]
+    return mesh
+
+
+def quad(name, material=None, **options):
+    mesh = quad_mesh(name)
+    if material is not None:
+        mesh.materials.append(material)
+    return add(name, mesh, **options)
+
+
+def tree_material(name):
+    """(material, tree, output node) with an empty tree."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    return material, material.node_tree, output
+
+
+def surface(name, build):
+    """A quad whose material's surface is the shader socket that build(tree) returns."""
+    material, tree, output = tree_material(name)
+    tree.links.new(build(tree), output.inputs["Surface"])
+    quad(name, material)
+    return material
+
+
+def node(tree, kind, inputs=None, **options):
+    made = tree.nodes.new("ShaderNode" + kind)
+    for key, value in options.items():
+        setattr(made, key, value)
+    for key, value in (inputs or {}).items():
+        if isinstance(value, bpy.types.NodeSocket):
+            tree.links.new(value, made.inputs[key])
+        else:
+            made.inputs[key].default_value = value
+    return made
+
+
+def image(name, pixels, colorspace="Non-Color", is_float=False):
+    """Image of (height, width, 4) values, bottom row first."""
+    pixels = np.asarray(pixels, dtype=np.float32)
+    made = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], alpha=True, float_buffer=is_float)
+    made.colorspace_settings.name = colorspace
+    made.pixels.foreach_set(pixels.reshape(-1))
+    made.pack()
+    return made
+
+
+def close(a, b, tolerance=1e-5):
+    assert np.allclose(a, b, atol=tolerance, rtol=0), f"{a} is not {b}"
+
+
+def value(record):
+    return record.get("value", [1, 1, 1])
+
+
+# ---- geometry -------------------------------------------------------------------------------
+
+def test_layers_and_normals():
+    mesh = quad_mesh("Layers")
+    mesh.uv_layers.new(name="Second")
+    byte = mesh.color_attributes.new("Byte", "BYTE_COLOR", "CORNER")
+    for item in byte.data:
+        item.color = (0.5, 0.25, 1.0, 1.0)
+    point = mesh.color_attributes.new("Point", "FLOAT_COLOR", "POINT")
+    point.data[2].color = (3.0, 0.0, 0.5, 1.0)
+    obj = add("Layers", mesh, scale=(-2.0, 1.0, 0.0))
+    shot = Shot()
+    read = shot.mesh("Layers")
+    assert read["uv_layer_names"] == ["UVMap", "Second"] and read["triangle_count"] == 2
+    assert read["corner_normals"] is None, "all faces are flat"
+    close(read["uv_layers"][0], read["positions"][read["corner_vertex"]][..., :2])
+    colors = dict(zip(read["color_layer_names"], read["color_layers"]))
+    close(colors["Byte"][0, 0], (0.5, 0.25, 1.0, 1.0), 0.01)
+    corner = read["corner_vertex"] == 2
+    close(colors["Point"][corner][0], (3.0, 0.0, 0.5, 1.0))
+    close(shot.instance("Layers")["transform"], np.array(obj.matrix_world)[:3].reshape(-1))
+    assert value(shot.closures("Layers")[0]["color"]) == [0.8] * 3, "no material is Blender's grey"
+
+
+def test_smooth_and_sharp():
+    bpy.ops.mesh.primitive_cube_add()
+    cube = bpy.context.object
+    cube.name = "Smooth"
+    for polygon in cube.data.polygons:
+        polygon.use_smooth = polygon.index != 0
+    shot = Shot()
+    read = shot.mesh("Smooth")
+    corners = read["positions"][read["corner_vertex"]]
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face /= np.linalg.norm(face, axis=1, keepdims=True)
+    flat = np.abs((read["corner_normals"] * face[:, None]).sum(-1) - 1).max(-1) < 1e-5
+    assert flat.sum() == 2, "the one flat face has two triangles"
+    smooth = read["corner_normals"][~flat].reshape(-1, 3)
+    close(np.abs(smooth), 1 / math.sqrt(3), 1e-3)
+
+
+def test_objects():
+    mesh = quad_mesh("Shared")
+    add("A", mesh)
+    add("B", mesh, location=(5, 0, 0))
+    add("Hidden", mesh, hide_render=True)
+    add("Unseen", mesh, hide_viewport=True)
+    add("NoShadow", mesh, visible_shadow=False)
+    mirrored = quad("Mirrored")
+    mirrored.modifiers.new("Mirror", "MIRROR")
+    refined = quad("Refined")
+    modifier = refined.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels, modifier.render_levels, modifier.subdivision_type = 0, 2, "SIMPLE"
+    add("Empty mesh", bpy.data.meshes.new("Empty mesh"))
+    bpy.ops.object.text_add()
+    bpy.context.object.name = "Text"
+    eye = quad("Eye")
+    eye.hide_set(True)
+    library = bpy.data.collections.new("Library")
+    library.objects.link(bpy.data.objects.new("Part", quad_mesh("Part")))
+    add("Instancer", None, instance_type="COLLECTION", instance_collection=library)
+    secret = bpy.data.collections.new("Secret")
+    bpy.context.scene.collection.children.link(secret)
+    secret.hide_render = True
+    secret.objects.link(bpy.data.objects.new("InSecret", mesh))
+    request, mapping = layout_request()
+    assert ("Shared", ["A", "B", "NoShadow", "Unseen"]) in mapping.meshes, mapping.meshes
+    places = {"A": place(0.5), "Mirrored": place(1), "Refined": place(1), "Unseen": place(1)}
+    for name in ("Shared", "Refined", "Mirrored"):
+        lightmap_layer(bpy.data.meshes[name])
+    shot = Shot({"pages": [{"width": 64, "height": 64}], "objects": places})
+    names = [i["name"] for i in shot.data["instances"]]
+    assert not {"Hidden", "InSecret", "Empty mesh"} & set(names), names
+    assert {"Unseen", "Eye", "Text"} <= set(names), names
+    assert shot.instance("A")["mesh"] == shot.instance("B")["mesh"] == shot.instance("Unseen")["mesh"]
+    assert shot.instance("A")["surface"] == "lightmap" and shot.instance("A")["lightmap_layer"] == 1
+    assert shot.instance("A")["uv_scale"] == [0.5, 0.5]
+    assert shot.instance("B")["surface"] == "occluder" and shot.warned("B", "no lightmap UVs")
+    assert shot.instance("NoShadow")["visibility"] == ["gather"]
+    assert shot.instance("Mirrored")["surface"] == "occluder" and shot.warned("Mirrored", "'Mirror'")
+    assert shot.instance("Refined")["surface"] == "lightmap"
+    assert shot.mesh("Refined")["triangle_count"] == 32, "subdivided as a render would be"
+    assert shot.warned("Empty mesh", "no faces") and shot.warned("Text", "font")
+    assert any(n.startswith("Instancer/Part") for n in names) and shot.warned("Instancer", "'Part'")
+    assert eye.hide_get() and bpy.data.objects["Unseen"].hide_viewport and modifier.levels == 0
+
+
+def layout_request():
+    with tempfile.TemporaryDirectory() as folder:
+        mapping = layout_module.write_layout_request(bpy.context, folder, model.layout_settings())
+        with Reader(folder, "layout") as reader:
+            return reader.data, mapping
+
+
+def place(scale):
+    return {"page": 0, "scale": [scale, scale], "offset": [0.0, 0.0]}
+
+
+def lightmap_layer(mesh):
+    layer = mesh.uv_layers.new(name=model.LIGHTMAP_UV)
+    for loop in mesh.loops:
+        layer.data[loop.index].uv = mesh.vertices[loop.vertex_index].co[:2]
+
+
+def test_damaged_mesh():
+    mesh = quad_mesh("Damaged")
+    for polygon in mesh.polygons:
+        polygon.use_smooth = True
+    mesh.vertices[1].co = (float("nan"), 0, 0)
+    add("Damaged", mesh, scale=(0, -1, 1))
+    read = Shot().mesh("Damaged")
+    assert np.isnan(read["positions"]).sum() == 1
+    sound = np.isfinite(read["positions"][read["corner_vertex"]]).all(axis=(1, 2))
+    assert np.isfinite(read["corner_normals"][sound]).all()
+
+
+def test_geometry_nodes():
+    """Instances made by geometry nodes: extracted once, placed often."""
+    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    if hasattr(tree, "interface"):
+        tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    else:
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    line, cube, place_node = (tree.nodes.new("GeometryNode" + k) for k in ("MeshLine", "MeshCube", "InstanceOnPoints"))
+    leave = tree.nodes.new("NodeGroupOutput")
+    tree.links.new(line.outputs[0], place_node.inputs["Points"])
+    tree.links.new(cube.outputs[0], place_node.inputs["Instance"])
+    tree.links.new(place_node.outputs[0], leave.inputs[0])
+    quad("Scatterer").modifiers.new("Nodes", "NODES").node_group = tree
+    harmless = bpy.data.node_groups.new("Smooth", "GeometryNodeTree")
+    harmless.nodes.new("GeometryNodeSetShadeSmooth")
+    objects = importlib.import_module(MODULE + ".extract.objects")
+    assert objects.copying_modifiers(bpy.data.objects["Scatterer"]) == ["Nodes"]
+    bpy.data.objects["Scatterer"].modifiers[0].node_group = harmless
+    assert not objects.copying_modifiers(bpy.data.objects["Scatterer"])
+    bpy.data.objects["Scatterer"].modifiers[0].node_group = tree
+    shot = Shot()
+    cubes = [i for i in shot.data["instances"] if i["name"] != "Scatterer"]
+    assert len(cubes) == 10 and len({i["mesh"] for i in cubes}) == 1, shot.data["instances"]
+    assert len({i["name"] for i in cubes}) == 10
+    assert shot.data["meshes"][cubes[0]["mesh"]]["triangle_count"] == 12
+
+
+def test_slots():
+    mesh = quad_mesh("Slots")
+    red, blue = (bpy.data.materials.new(n) for n in ("Red", "Blue"))
+    red.diffuse_color, blue.diffuse_color = (1, 0, 0, 1), (0, 0, 1, 1)
+    mesh.materials.append(red)
+    add("Own", mesh)
+    other = add("Other", mesh)
+    other.material_slots[0].link = "OBJECT"
+    other.material_slots[0].material = blue
+    mesh.polygons[0].material_index = 3
+    shot = Shot()
+    assert shot.material("Own")["name"] == "Red" and shot.material("Other")["name"] == "Blue"
+    assert len(shot.instance("Own")["materials"]) == 4, "indices past the slots show the last"
+    close(value(shot.closures("Own")[0]["color"]), (1, 0, 0))
+
+
+def test_layout_request():
+    mesh = quad_mesh("Plane")
+    mesh.edges[0].use_edge_sharp = True
+    add("P1", mesh)
+    add("P2", mesh, scale=(-3, 1, 1))
+    request, mapping = layout_request()
+    assert mapping.meshes == [("Plane", ["P1", "P2"])]
+    record = request["meshes"][0]
+    assert record["corner_edge_sharp"]["count"] == 4 and record["corner_uv"] is None
+    assert record["users"][1]["transform"][0] == -3.0
+
+
+# ---- materials ------------------------------------------------------------------------------
+
+def test_principled():
+    surface("P", lambda t: node(t, "BsdfPrincipled", {
+        "Base Color": (0.1, 0.2, 0.3, 1), "Metallic": 0.25, "Roughness": 0.6}).outputs[0])
+    surface("Glow", lambda t: node(t, "BsdfPrincipled", {"Emission": (1, 0.5, 0, 1), "Emission Strength": 4.0}
+                                   if "Emission" in t.nodes.new("ShaderNodeBsdfPrincipled").inputs else
+                                   {"Emission Color": (1, 0.5, 0, 1), "Emission Strength": 4.0}).outputs[0])
+    surface("Half", lambda t: node(t, "BsdfPrincipled", {"Alpha": 0.25}).outputs[0])
+    shot = Shot()
+    (only,) = shot.closures("P")
+    close(value(only["color"]), (0.1, 0.2, 0.3))
+    assert only["type"] == "principled" and abs(value(only["metallic"])[0] - 0.25) < 1e-6
+    assert abs(only["specular"] - 0.5) < 1e-6
+    glow = shot.closures("Glow")
+    assert [c["type"] for c in glow] == ["emission", "principled"]
+    close(value(glow[0]["strength"])[0], 4.0)
+    half = shot.closures("Half")
+    assert [c["type"] for c in half] == ["transparent", "principled"]
+    close(value(half[0]["weight_a"])[0], 0.75)
+    close(value(half[1]["weight_a"])[0], 0.25)
+
+
+def checker(size=2):
+    pixels = np.zeros((size, size, 4), dtype=np.float32)
+    pixels[..., 0] = np.linspace(0, 1, size)[None, :]
+    pixels[..., 1] = np.linspace(0, 1, size)[:, None]
+    pixels[..., 3] = 1.0
+    pixels[0, 0, 3] = 0.0
+    return pixels
+
+
+def textured(name, shown, shader="BsdfDiffuse"):
+    surface(name, lambda t: node(t, shader, {"Color": node(t, "TexImage", image=shown).outputs[0]}).outputs[0])
+
+
+def test_textures():
+    coded = image("Coded", checker(), "sRGB")
+    data = image("Data", checker(4))
+    high = image("High", checker() * 8, "Non-Color", True)
+    large = image("Large", np.tile((0.5, 0.5, 0.5, 1.0), (300, 2500, 1)), "sRGB")
+
+    def mapped(tree):
+        uv = node(tree, "UVMap", uv_map="UVMap")
+        turned = node(tree, "Mapping", {"Vector": uv.outputs[0], "Location": (1, 2, 0),
+                                        "Rotation": (0, 0, math.pi / 2), "Scale": (3, 4, 1)})
+        texture = node(tree, "TexImage", {"Vector": turned.outputs[0]}, image=data, interpolation="Closest",
+                       extension="EXTEND")
+        tinted = node(tree, "MixRGB", {"Fac": 1.0, "Color1": texture.outputs[0], "Color2": (0.5, 1, 2, 1)},
+                      blend_type="MULTIPLY")
+        return node(tree, "BsdfDiffuse", {"Color": tinted.outputs[0]}).outputs[0]
+    surface("Mapped", mapped)
+    textured("Plain", coded)
+    textured("Float", high, "Emission")
+    textured("Shrunk", large)
+    lost = bpy.data.images.new("Lost", 4, 4)
+    lost.source, lost.filepath = "FILE", "/nowhere/lost.png"
+    textured("NoFile", lost)
+    shot = Shot()
+    color = shot.closures("Mapped")[0]["color"]
+    close(color["uv_transform"], (0, -4, 1, 3, 0, 2))
+    close(value(color), (0.5, 1, 2))
+    texture = shot.data["textures"][color["texture"]]
+    assert texture["nearest"] and texture["extend"] == "edge" and texture["color"] == "linear"
+    plain = shot.data["textures"][shot.closures("Plain")[0]["color"]["texture"]]
+    assert plain["texel"] == "u8" and plain["color"] == "srgb"
+    assert plain["texels"][0, 1].tolist() == [255, 0, 0, 255], "bottom row first"
+    bright = shot.data["textures"][shot.closures("Float")[0]["color"]["texture"]]
+    assert bright["texel"] == "f32" and bright["texels"].max() == 8.0
+    shrunk = shot.data["textures"][shot.closures("Shrunk")[0]["color"]["texture"]]
+    assert (shrunk["width"], shrunk["height"]) == (1024, 123)
+    close(shrunk["texels"][..., :3], 128, 1)
+    close(value(shot.closures("NoFile")[0]["color"]), 0.5)
+    assert shot.warned("NoFile", "Lost")
+
+
+def test_mix_and_alpha():
+    cutout = image("Cutout", checker(), "sRGB")
+
+    def mixed(tree):
+        texture = node(tree, "TexImage", image=cutout)
+        solid = node(tree, "BsdfDiffuse", {"Color": texture.outputs[0]})
+        return node(tree, "MixShader", {0: texture.outputs["Alpha"], 1: node(tree, "BsdfTransparent").outputs[0],
+                                        2: solid.outputs[0]}).outputs[0]
+    surface("Fence", mixed)
+
+    def nested(tree):
+        texture = node(tree, "TexImage", image=cutout)
+        inner = node(tree, "MixShader", {0: 0.25, 1: node(tree, "Emission").outputs[0],
+                                         2: node(tree, "BsdfDiffuse").outputs[0]})
+        add_shader = node(tree, "AddShader", {0: inner.outputs[0], 1: node(tree, "Emission").outputs[0]})
+        return node(tree, "MixShader", {0: texture.outputs[0], 1: add_shader.outputs[0]}).outputs[0]
+    surface("Nested", nested)
+    shot = Shot()
+    clear, solid = shot.closures("Fence")
+    assert clear["type"] == "transparent" and clear["weight_a"]["invert"] and clear["weight_a"]["channel"] == "a"
+    assert solid["weight_a"]["channel"] == "a" and not solid["weight_a"].get("invert")
+    emission, diffuse, extra = shot.closures("Nested")
+    close(value(emission["weight_a"])[0], 0.75)
+    assert emission["weight_b"]["invert"] and extra["weight_a"]["invert"]
+    luminance = shot.data["textures"][emission["weight_b"]["texture"]]
+    close(luminance["texels"][0, 1, 0], 0.2126, 1e-4)
+
+
+def test_vertex_colours_and_groups():
+    def colored(tree):
+        layer = node(tree, "VertexColor", layer_name="Col")
+        texture = node(tree, "TexImage", image=image("Tint", checker()))
+        both = node(tree, "MixRGB", {"Fac": 1.0, "Color1": layer.outputs[0], "Color2": texture.outputs[0]},
+                    blend_type="MULTIPLY")
+        return node(tree, "BsdfDiffuse", {"Color": both.outputs[0]}).outputs[0]
+    surface("Painted", colored)
+    bpy.data.meshes["Painted"].color_attributes.new("Col", "FLOAT_COLOR", "POINT")
+    group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+    if hasattr(group, "interface"):
+        group.interface.new_socket("Color", in_out="INPUT", socket_type="NodeSocketColor")
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+    else:
+        group.inputs.new("NodeSocketColor", "Color")
+        group.outputs.new("NodeSocketShader", "Shader")
+    entry, leave = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    reroute = group.nodes.new("NodeReroute")
+    group.links.new(entry.outputs[0], reroute.inputs[0])
+    group.links.new(node(group, "BsdfDiffuse", {"Color": reroute.outputs[0]}).outputs[0], leave.inputs[0])
+
+    def grouped(tree):
+        outer = tree.nodes.new("ShaderNodeGroup")
+        outer.node_tree = group
+        gamma = node(tree, "Gamma", {"Color": (0.5, 0.25, 1, 1), "Gamma": 2.0})
+        muted = node(tree, "Invert", {"Color": gamma.outputs[0]})
+        muted.mute = True
+        tree.links.new(muted.outputs[0], outer.inputs[0])
+        return outer.outputs[0]
+    surface("Grouped", grouped)
+    shot = Shot()
+    color = shot.closures("Painted")[0]["color"]
+    assert color["color_layer"] == 0 and color["texture"] is not None
+    close(value(shot.closures("Grouped")[0]["color"]), (0.25, 0.0625, 1.0))
+
+
+def test_ramp_per_texel():
+    def ramped(tree):
+        texture = node(tree, "TexImage", image=image("Ramped", checker(8)))
+        ramp = node(tree, "ValToRGB", {"Fac": texture.outputs[0]})
+        ramp.color_ramp.elements[0].color = (1, 0, 0, 1)
+        ramp.color_ramp.elements[1].color = (0, 0, 1, 1)
+        return node(tree, "BsdfDiffuse", {"Color": ramp.outputs[0]}).outputs[0]
+    surface("Ramp", ramped)
+    shot = Shot()
+    texture = shot.data["textures"][shot.closures("Ramp")[0]["color"]["texture"]]
+    luminance = checker(8)[..., :3] @ (0.2126, 0.7152, 0.0722)
+    close(texture["texels"][..., 2], luminance, 0.01)
+    close(texture["texels"][..., 0], 1 - luminance, 0.01)
+    assert all("lightmap" in t for _, t in shot.result.warnings)
+
+
+def test_blackbody():
+    close(color_module.blackbody(6500), (1.05, 0.98, 1.0), 0.05)
+    warm = color_module.blackbody(3000)
+    close(np.dot(warm, (0.2126, 0.7152, 0.0722)), 1.0, 1e-3)
+    close(warm, (1.77, 0.845, 0.26), 0.05)
+
+
+# ---- what Cycles bakes ------------------------------------------------------------------------
+
+def object_color_material(name, grouped):
+    """Diffuse whose colour is the object-space position: no field expresses that."""
+    def build(tree):
+        target = tree
+        if grouped:
+            target = bpy.data.node_groups.new("Inner", "ShaderNodeTree")
+            if hasattr(target, "interface"):
+                target.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+            else:
+                target.outputs.new("NodeSocketShader", "Shader")
+        place_node = node(target, "TexCoord")
+        shader = node(target, "BsdfDiffuse", {"Color": place_node.outputs["Object"]}).outputs[0]
+        if not grouped:
+            return shader
+        leave = target.nodes.new("NodeGroupOutput")
+        target.links.new(shader, leave.inputs[0])
+        outer = tree.nodes.new("ShaderNodeGroup")
+        outer.node_tree = target
+        return outer.outputs[0]
+    return surface(name, build)
+
+
+def check_baked(shot, name):
+    color = shot.closures(name)[0]["color"]
+    texture, mesh = shot.data["textures"][color["texture"]], shot.mesh(name)
+    uv = mesh["uv_layers"][color["uv_layer"]].mean(axis=1)
+    m = np.array(color.get("uv_transform", (1, 0, 0, 0, 1, 0))).reshape(2, 3)
+    u, v = (uv @ m[:, :2].T + m[:, 2]).T
+    texels = texture["texels"]
+    found = texels[(v * texture["height"]).astype(int), (u * texture["width"]).astype(int), :3]
+    center = mesh["positions"][mesh["corner_vertex"]].mean(axis=1)
+    close(found[:, :2], center[:, :2], 1.5 / min(texture["width"], texture["height"]) + 0.01)
+
+
+def test_cycles_bake():
+    before = data_counts()
+    object_color_material("Cells", False)
+    object_color_material("Mapped", True)
+    lightmap_layer(bpy.data.meshes["Mapped"])
+    made = {k: n - before[k] for k, n in data_counts().items()}
+    shot = Shot({"pages": [{"width": 64, "height": 64}], "objects": {"Mapped": place(1)}})
+    assert {k: n - before[k] for k, n in data_counts().items()} == made, "temporary data is left"
+    check_baked(shot, "Cells")
+    check_baked(shot, "Mapped")
+    assert shot.warned("Cells", "baked to a texture")
+    assert shot.mesh("Cells")["uv_layer_names"] == ["UVMap", "AjarBaked"]
+
+
+NODE_CASES = {
+    "gamma": lambda t: node(t, "Gamma", {"Color": (0.5, 0.2, 1.5, 1), "Gamma": 1.7}),
+    "invert": lambda t: node(t, "Invert", {0: 0.3, "Color": (0.5, 0.2, 0.9, 1)}),
+    "bright": lambda t: node(t, "BrightContrast", {"Color": (0.5, 0.2, 0.9, 1), "Bright": 0.1, "Contrast": 0.4}),
+    "hue": lambda t: node(t, "HueSaturation", {"Color": (0.5, 0.2, 0.9, 1), "Hue": 0.7, "Saturation": 0.6,
+                                               "Value": 1.3, 3: 0.8}),
+    "blackbody": lambda t: node(t, "Blackbody", {0: 3200.0}),
+    "combine": lambda t: node(t, "CombineColor", {0: 0.6, 1: 0.5, 2: 0.7}, mode="HSV"),
+    "ramp": lambda t: node(t, "ValToRGB", {0: 0.3}),
+    "math": lambda t: node(t, "Math", {0: 0.3, 1: 2.5}, operation="POWER"),
+    "range": lambda t: node(t, "MapRange", {"Value": 0.3, 1: 0.1, 2: 0.5, 3: 2.0, 4: 1.0}),
+    **{f"mix {blend.lower()}": lambda t, blend=blend: node(
+        t, "MixRGB", {0: 0.6, 1: (0.2, 0.5, 0.8, 1), 2: (0.7, 0.3, 0.4, 1)}, blend_type=blend)
+       for blend in ("MIX", "ADD", "MULTIPLY", "SCREEN", "OVERLAY", "DIFFERENCE", "DIVIDE", "LINEAR_LIGHT", "LIGHTEN")},
+}
+
+
+def test_nodes_agree_with_cycles():
+    """Each node on constants: our evaluation against Cycles' bake of the same socket."""
+    materials = {}
+    for name, build in NODE_CASES.items():
+        materials[name] = surface(name, lambda t: node(t, "Emission", {"Color": build(t).outputs[0]}).outputs[0])
+    shot = Shot()
+    bake = importlib.import_module(MODULE + ".extract.cycles_bake").bake_socket
+    wrong = []
+    for name, material in materials.items():
+        emission = next(n for n in material.node_tree.nodes if n.type == "EMISSION")
+        owner = Owner(bpy.data.objects[name], material)
+        uv = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], dtype=np.float32)
+        baked = bake(owner, material, (emission.name, emission.inputs["Color"].identifier), uv, (16, 16), True)
+        ours = value(shot.closures(name)[0]["color"])
+        if not np.allclose(ours, baked[8, 4, :3], rtol=0.02, atol=2e-3):
+            wrong.append((name, ours, baked[8, 4, :3]))
+    assert not wrong, wrong
+
+
+class Owner:
+    """A stand-in for snapshot.Placed."""
+
+    def __init__(self, source, material):
+        self.name, self.source, self.materials, self.matrix = source.name, source, [material], source.matrix_world
+
+    def make_mesh(self, split):
+        return self.source.data.copy(), np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def data_counts():
+    return {name: len(getattr(bpy.data, name)) for name in
+            ("scenes", "worlds", "objects", "meshes", "materials", "images", "cameras", "node_groups", "textures")}
+
+
+# ---- world and lights -------------------------------------------------------------------------
+
+def directional_world():
+    world = bpy.data.worlds.new("Directions")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    tree = world.node_tree
+    tree.nodes.clear()
+    direction = node(tree, "TexCoord").outputs["Generated"]
+    half = node(tree, "VectorMath", {0: direction, 1: (0.5, 0.5, 0.5), 2: (0.5, 0.5, 0.5)}, operation="MULTIPLY_ADD")
+    background = node(tree, "Background", {"Color": half.outputs[0], "Strength": 2.0})
+    tree.links.new(background.outputs[0], tree.nodes.new("ShaderNodeOutputWorld").inputs[0])
+    return world
+
+
+def test_sky_mapping():
+    directional_world()
+    before, engine = data_counts(), bpy.context.scene.render.engine
+    world_module.SKY_WIDTH, old = 64, world_module.SKY_WIDTH
+    try:
+        shot = Shot()
+    finally:
+        world_module.SKY_WIDTH = old
+    assert data_counts() == before and bpy.context.scene.render.engine == engine
+    sky = shot.data["sky"]
+    assert sky["type"] == "equirect"
+    texels = shot.data["textures"][sky["texture"]]["texels"]
+    height, width = texels.shape[:2]
+    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij")
+    angle, z = -(u - 0.5) * 2 * math.pi, np.sin((v - 0.5) * math.pi)
+    flat = np.sqrt(1 - z * z)
+    expected = np.stack([np.cos(angle) * flat, np.sin(angle) * flat, z], -1) + 1.0
+    close(texels[..., :3], expected, 0.06)
+
+
+def test_constant_sky():
+    world = bpy.data.worlds.new("Constant")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    background = next(n for n in world.node_tree.nodes if n.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
+    background.inputs["Strength"].default_value = 0.5
+    sky = Shot().data["sky"]
+    assert sky["type"] == "constant"
+    close(sky["color"], (0.05, 0.1, 0.2))
+    bpy.context.scene.world = None
+    assert Shot().data["sky"]["type"] == "none"
+
+
+def test_hdri_sky():
+    world = bpy.data.worlds.new("HDRI")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    tree = world.node_tree
+    texture = node(tree, "TexEnvironment", image=image("Env", checker(8) * 5, "Non-Color", True))
+    background = next(n for n in tree.nodes if n.type == "BACKGROUND")
+    tree.links.new(texture.outputs[0], background.inputs["Color"])
+    background.inputs["Strength"].default_value = 3.0
+    shot = Shot()
+    assert shot.data["sky"]["type"] == "equirect" and shot.data["sky"]["color"] == [3.0] * 3
+    close(shot.data["textures"][shot.data["sky"]["texture"]]["texels"][..., :2], checker(8)[..., :2] * 5)
+
+
+def light(name, kind, **options):
+    data = bpy.data.lights.new(name, kind)
+    for key, setting in options.items():
+        setattr(data, key, setting)
+    return add(name, data)
+
+
+def test_lights():
+    light("Point", "POINT", energy=12.5, color=(1, 0.5, 0.25), shadow_soft_size=0.3)
+    light("Spot", "SPOT", spot_size=1.2, spot_blend=0.3)
+    light("Sun", "SUN", energy=3, angle=0.1)
+    light("Square", "AREA", shape="SQUARE", size=2)
+    light("Disk", "AREA", shape="DISK", size=2)
+    light("Ellipse", "AREA", shape="ELLIPSE", size=2, size_y=3)
+    off = light("Gone", "POINT")
+    off.hide_render = True
+    nodes = light("Nodes", "POINT", use_nodes=True)
+    emission = next(n for n in nodes.data.node_tree.nodes if n.type == "EMISSION")
+    emission.inputs["Strength"].default_value = 2.0
+    emission.inputs["Color"].default_value = (0.5, 1, 1, 1)
+    lights = {l["name"]: l for l in Shot().data["lights"]}
+    assert "Gone" not in lights
+    assert lights["Point"]["energy"] == 12.5 and abs(lights["Point"]["radius"] - 0.3) < 1e-6
+    close(lights["Point"]["color"], (1, 0.5, 0.25))
+    assert abs(lights["Spot"]["spot_angle"] - 1.2) < 1e-6 and lights["Sun"]["type"] == "sun"
+    assert lights["Square"]["type"] == "rectangle" and lights["Square"]["size_y"] == 2
+    assert lights["Disk"]["type"] == "ellipse" and lights["Ellipse"]["size_y"] == 3
+    close(lights["Nodes"]["color"], (1, 2, 2))
+
+
+def test_sky_texture_has_its_sun():
+    """Irradiance of a Sky Texture's sun disc on a plane that faces it: the panorama keeps it."""
+    world = bpy.data.worlds.new("Nishita")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    tree = world.node_tree
+    sky = node(tree, "TexSky")
+    background = next(n for n in tree.nodes if n.type == "BACKGROUND")
+    tree.links.new(sky.outputs[0], background.inputs["Color"])
+    sums = []
+    for disc in (False, True):
+        sky.sun_disc, sky.sun_elevation, sky.sun_size = disc, 0.8, math.radians(2)
+        texels = world_module.render_panorama(world, 512).data
+        latitude = (np.arange(256) + 0.5) / 256 * math.pi - math.pi / 2
+        solid_angle = np.cos(latitude)[:, None] * (math.pi / 256) ** 2
+        sums.append(float((texels[..., 1] * solid_angle)[128:].sum()))
+        high = np.unravel_index(texels[..., 1].argmax(), texels.shape[:2])
+    assert sums[1] > 2 * sums[0] > 0.0, sums
+    assert abs(latitude[high[0]] - 0.8) < 0.03
+
+
+def test_tags():
+    """What the artist set in Object.ajar and World.ajar; needs the add-on registered."""
+    if not hasattr(bpy.types.Scene, "ajar"):
+        return
+    for name, tag in (("Ignored", "IGNORE"), ("Grid", "LIGHT_GRID"), ("Block", "OCCLUDER"), ("Lit", "AUTO")):
+        quad(name).ajar.surface = tag
+    light("Off", "POINT").ajar.light_role = "OFF"
+    light("Static", "POINT").ajar.light_role = "STATIC"
+    directional_world().ajar.sky_role = "OFF"
+    _, mapping = layout_request()
+    assert mapping.meshes == [("Lit", ["Lit"])]
+    shot = Shot()
+    assert "Ignored" not in [i["name"] for i in shot.data["instances"]]
+    assert [(l["name"], l["role"]) for l in shot.data["lights"]] == [("Static", "static")]
+    assert shot.data["sky"]["type"] == "none" and not shot.warned("Block", "lightmap")
+
+
+def main():
+    wanted = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    tests = [(n, f) for n, f in globals().items() if n.startswith("test_") and (not wanted or n in wanted)]
+    failed = []
+    for name, function in tests:
+        reset()
+        try:
+            function()
+            print("ok  ", name)
+        except Exception:
+            import traceback
+            traceback.print_exc()
+            print("FAIL", name)
+            failed.append(name)
+    if failed:
+        raise SystemExit(f"{len(failed)} of {len(tests)} failed: {', '.join(failed)}")
+
+
+main()
