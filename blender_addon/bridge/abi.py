@@ -21,6 +21,8 @@ CLOSURE = {"diffuse": 0, "principled": 1, "emission": 2, "transparent": 3}
 SURFACE = {"lightmap": 0, "occluder": 1}
 VISIBLE = {"gather": 1, "shadow": 2}
 LIGHT = {"point": 0, "spot": 1, "sun": 2, "rectangle": 3, "ellipse": 4}
+ELEMENT = {"light_set": 0, "door": 1, "toggle": 2}
+COMBINATIONS = {"NONE": 0, "AUTO": 1, "ALL": 2}
 ROLE = {"primary": 0, "static": 1}
 SKY = {"none": 0, "constant": 1, "equirect": 2}
 
@@ -59,18 +61,24 @@ class MeshDesc(c.Structure):
                 ("color_layers", c.POINTER(floats))]
 
 
+class ElementDesc(c.Structure):
+    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("kind", u32), ("weight", f32),
+                ("combine", u32), ("bounce", u32)]
+
+
 class InstanceDesc(c.Structure):
     _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("mesh", u32), ("transform", f64 * 12),
                 ("material_count", u32), ("materials", uints), ("surface", u32),
                 ("visibility", u32), ("lightmap_layer", u32), ("page", u32),
-                ("uv_scale", f32 * 2), ("uv_offset", f32 * 2)]
+                ("uv_scale", f32 * 2), ("uv_offset", f32 * 2), ("element", u32), ("open_pose", u32),
+                ("light_set", u32)]
 
 
 class LightDesc(c.Structure):
     _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("type", u32), ("role", u32),
                 ("transform", f64 * 12), ("color", f32 * 3), ("energy", f32), ("radius", f32),
                 ("spot_angle", f32), ("spot_blend", f32), ("sun_angle", f32), ("size_x", f32),
-                ("size_y", f32), ("spread", f32), ("casts_shadow", u32)]
+                ("size_y", f32), ("spread", f32), ("casts_shadow", u32), ("light_set", u32)]
 
 
 class SkyDesc(c.Structure):
@@ -81,7 +89,14 @@ class Settings(c.Structure):
     _fields_ = [("struct_size", u32), ("bounces", u32), ("noise_target", f32), ("time_limit", f32),
                 ("samples", u32), ("bounce_samples", u32), ("direct_samples", u32),
                 ("positions_per_texel", u32), ("seed", u32), ("threads", u32),
-                ("stitch_seams", u32), ("keep_sh", u32), ("keep_bounces", u32)]
+                ("stitch_seams", u32), ("keep_sh", u32), ("keep_bounces", u32),
+                ("combinations", u32), ("term_threshold", f32)]
+
+
+class TermInfo(c.Structure):
+    _fields_ = [("struct_size", u32), ("element_count", u32), ("elements", u32 * 4),
+                ("is_signed", u32), ("texel_count", u64), ("relative_error", f32),
+                ("discarded", f32)]
 
 
 class Progress(c.Structure):
@@ -106,6 +121,7 @@ class LayoutMeshDesc(c.Structure):
 STRUCTS = {
     "ajar_texture_desc": TextureDesc, "ajar_input": Input, "ajar_closure": Closure,
     "ajar_material_desc": MaterialDesc, "ajar_mesh_desc": MeshDesc,
+    "ajar_element_desc": ElementDesc, "ajar_term_info": TermInfo,
     "ajar_instance_desc": InstanceDesc, "ajar_light_desc": LightDesc, "ajar_sky_desc": SkyDesc,
     "ajar_settings": Settings, "ajar_progress": Progress,
     "ajar_layout_settings": LayoutSettings, "ajar_layout_mesh_desc": LayoutMeshDesc,
@@ -126,6 +142,7 @@ FUNCTIONS = {
     "ajar_closure_init": (None, [P(Closure)]),
     "ajar_material_desc_init": (None, [P(MaterialDesc)]),
     "ajar_mesh_desc_init": (None, [P(MeshDesc)]),
+    "ajar_element_desc_init": (None, [P(ElementDesc)]),
     "ajar_instance_desc_init": (None, [P(InstanceDesc)]),
     "ajar_light_desc_init": (None, [P(LightDesc)]),
     "ajar_sky_desc_init": (None, [P(SkyDesc)]),
@@ -134,6 +151,7 @@ FUNCTIONS = {
     "ajar_scene_add_texture": (Result, [Handle, P(TextureDesc), uints]),
     "ajar_scene_add_material": (Result, [Handle, P(MaterialDesc), uints]),
     "ajar_scene_add_mesh": (Result, [Handle, P(MeshDesc), uints]),
+    "ajar_scene_add_element": (Result, [Handle, P(ElementDesc), uints]),
     "ajar_scene_add_instance": (Result, [Handle, P(InstanceDesc), uints]),
     "ajar_scene_add_light": (Result, [Handle, P(LightDesc), uints]),
     "ajar_scene_add_page": (Result, [Handle, u32, u32, uints]),
@@ -152,6 +170,10 @@ FUNCTIONS = {
     "ajar_job_release": (Result, [P(Handle)]),
     "ajar_job_layer_size": (Result, [Handle, u32, u32, uints, uints, uints]),
     "ajar_job_read_layer": (Result, [Handle, u32, u32, floats, u64]),
+    "ajar_term_info_init": (None, [P(TermInfo)]),
+    "ajar_job_term_count": (Result, [Handle, uints]),
+    "ajar_job_term": (Result, [Handle, u32, P(TermInfo)]),
+    "ajar_job_read_term": (Result, [Handle, u32, u32, floats, u64]),
     "ajar_job_report": (Result, [Handle, c.c_char_p, P(u64)]),
     "ajar_job_write_package": (Result, [Handle, c.c_char_p, c.c_char_p]),
     "ajar_layout_settings_init": (None, [P(LayoutSettings)]),

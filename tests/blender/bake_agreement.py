@@ -2,8 +2,8 @@
 """Bake a .blend with Ajar and with Cycles on the same lightmap UVs and compare.
 
     python3 tests/blender/bake_agreement.py LEVEL.blend --out DIR [--density 2] [--bounces 4]
-            [--preset reference] [--ajar-samples 4096] [--samples 8192] [--fraction 0.1] [--keep-materials] [--keep-roles]
-            [--reuse-reference] [further options of compare_bake.py]
+            [--preset reference] [--ajar-samples 4096] [--samples 8192] [--fraction 0.1]
+            [--keep-materials] [--keep-roles] [--reuse-reference] [further options of compare_bake.py]
 
 Works on a copy with plain diffuse materials and static lamps unless told to keep them; lamps that
 stay primary are compared by their bounced light alone. Logs and results are left in DIR.

@@ -2,11 +2,14 @@
 """Compare the irradiance pages of an Ajar bake with a reference written by cycles_bake.py.
 
     python3 tests/blender/compare_bake.py --package DIR/package --reference REF.npz [--out DIR]
-            [--tolerance 0.05] [--sigma 1] [--worst 20] [--require-mean 0.01] [--require-share 0.95]
+            [--tolerance 0.05] [--sigma 1] [--max-back 0.25] [--worst 20]
+            [--require-mean 0.01] [--require-share 0.95]
 
 A texel agrees if its luminance differs by at most tolerance * reference + sigma * the combined
 standard error of both bakes. Compared are texels that Ajar calls valid, that Cycles baked and that
-lie in exactly one triangle. With --require-* the exit code tells whether the bakes agree.
+lie in exactly one triangle. Left out, unless --max-back 1, are texels that look into solids (more than
+a quarter of their rays meet back faces) or that coincide with an opposite face: there the two differ
+by intent. With --require-* the exit code tells whether the bakes agree.
 """
 import argparse
 import json
@@ -24,7 +27,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 class Page:
     """One page of both bakes; all arrays (h, w[, 3]), bottom row first."""
 
-    def __init__(self, package, entry, reference, index):
+    def __init__(self, package, entry, reference, index, max_back=0.25):
         self.index = index
         self.ajar = exr.read_rgb(os.path.join(package, entry['irradiance'])).astype(np.float64)
         quality = exr.read_exr(os.path.join(package, entry['quality']))
@@ -37,6 +40,9 @@ class Page:
         self.covered = read('valid')
         self.valid = (self.validity > 0.99) & self.covered & (read('overlap') <= 1)
         self.valid &= np.isfinite(self.ajar).all(-1) & np.isfinite(self.reference).all(-1)
+        self.back = read('back')
+        if max_back < 1:
+            self.valid &= (self.back <= max_back) & ~read('coincident')
         self.border = self.covered & ~_all_neighbours(self.object >= 0, self.object)
 
 
@@ -64,7 +70,7 @@ class Texels:
         self.ajar_error, self.reference_error = pick('ajar_error'), pick('reference_error')
         self.error = np.hypot(self.ajar_error, self.reference_error)
         self.position, self.object, self.material = pick('position'), pick('object'), pick('material')
-        self.border = pick('border')
+        self.border, self.back = pick('border'), pick('back')
         self.xy = np.concatenate([np.stack([np.full(p.valid.sum(), p.index), *np.nonzero(p.valid)[::-1]], -1)
                                   for p in pages])
 
@@ -93,6 +99,7 @@ def summarize(texels, args):
         'share_interior': float(agree[inner].mean()) if inner.any() else None,
         'share_border': float(agree[~inner].mean()) if (~inner).any() else None,
         'border_texels': int((~inner).sum()),
+        'by_back_share': back_rows(texels, agree),
         'share_without_noise_allowance': float(texels.agree(args.tolerance, 0).mean()),
         'relative_percentiles': dict(zip(bounds, np.percentile(relative, [float(b) for b in bounds]).tolist())),
         'rms_relative': float(np.sqrt(np.mean(relative ** 2))),
@@ -100,6 +107,17 @@ def summarize(texels, args):
         'reference_median_relative_stderr': _median_ratio(texels.reference_error, texels.r),
         'z_rms': float(np.sqrt(np.mean(((texels.a - texels.r) / np.maximum(texels.error, 1e-12)) ** 2))),
     }
+
+
+def back_rows(texels, agree):
+    """{range of back-face share: [texels, mean ratio, share agreeing]}."""
+    rows = {}
+    for low, high in ((-1, 0), (0, 0.05), (0.05, 0.25), (0.25, 0.6), (0.6, 1)):
+        mask = (texels.back > low) & (texels.back <= high)
+        if mask.any():
+            rows[f"<={high}"] = [int(mask.sum()), round(float(texels.a[mask].sum() / max(texels.r[mask].sum(), 1e-30)), 4),
+                                round(float(agree[mask].mean()), 4)]
+    return rows
 
 
 def _median_ratio(error, value):
@@ -166,18 +184,19 @@ def parse():
     parser.add_argument('--out', help="folder for compare.json and error maps")
     parser.add_argument('--tolerance', type=float, default=0.05)
     parser.add_argument('--sigma', type=float, default=1.0)
+    parser.add_argument('--max-back', type=float, default=0.25)
     parser.add_argument('--worst', type=int, default=20)
     parser.add_argument('--require-mean', type=float, help="largest |mean ratio - 1|")
     parser.add_argument('--require-share', type=float, help="smallest share of agreeing texels")
     return parser.parse_args()
 
 
-def load(package, reference_path):
+def load(package, reference_path, max_back=0.25):
     """(pages, meta) of both bakes."""
     with open(os.path.join(package, 'manifest.json'), encoding='utf-8') as file:
         entries = json.load(file)['pages']
     reference = np.load(reference_path)
-    pages = [Page(package, entry, reference, i) for i, entry in enumerate(entries)]
+    pages = [Page(package, entry, reference, i, max_back) for i, entry in enumerate(entries)]
     return pages, json.loads(str(reference['meta']))
 
 
@@ -189,7 +208,7 @@ def failed(summary, args):
 
 def main():
     args = parse()
-    pages, meta = load(args.package, args.reference)
+    pages, meta = load(args.package, args.reference, args.max_back)
     texels = Texels(pages)
     if not len(texels.a):
         sys.exit("no texel to compare")

@@ -8,8 +8,8 @@
 All lightmapped objects are merged, so each repeat is one bake. The samples are split over repeats
 with different seeds; their spread gives every texel's standard error. First hits are shaded plain
 white diffuse, so the result is irradiance whatever the material. Arrays per page P, bottom row
-first: P_mean, P_stderr (RGB, W/m^2), P_valid, P_position, P_normal, P_object, P_material, P_overlap;
-'meta' is JSON with the names behind the indices.
+first: P_mean, P_stderr (RGB, W/m^2), P_valid, P_position, P_normal, P_object, P_material, P_overlap,
+P_back (share of rays that meet back faces), P_coincident; 'meta' is JSON with the names behind the indices.
 """
 import json
 import os
@@ -20,7 +20,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support import cycles, merge, scene, texels  # noqa: E402
+from support import cycles, merge, scene, surroundings, texels  # noqa: E402
 
 
 def parse():
@@ -155,7 +155,7 @@ def save(path, pages, total, minus, maps, meta):
         arrays[f'{page}_mean'] = mean.astype(np.float32)
         arrays[f'{page}_stderr'] = np.sqrt(variance).astype(np.float32)
         arrays[f'{page}_valid'] = total.valid[page]
-        for name in ('position', 'normal', 'object', 'material', 'overlap'):
+        for name in ('position', 'normal', 'object', 'material', 'overlap', 'back', 'coincident'):
             arrays[f'{page}_{name}'] = getattr(maps[page], name)
     np.savez(path, **arrays)
 
@@ -189,6 +189,7 @@ def main():
     total = bake_repeats(merged, materials, args, args.bounces, ('DIRECT', 'INDIRECT'))
     seconds = time.time() - begin
     minus = bake_lamp_direct(merged, materials, args) if args.without_direct else None
+    surroundings.examine(pieces, maps, total.valid)
     save(args.out, pages, total, minus, maps, {
         'objects': objects, 'materials': names, 'samples': args.samples, 'repeats': args.repeats,
         'bounces': args.bounces, 'seconds': seconds, 'pages': len(pages)})

@@ -225,6 +225,35 @@ ajar_result code_of(const std::function<void()>& body) {
     return AJAR_OK;
 }
 
+TEST(ReceiverLayout, MoreChartsThanAPageTakesIsAnErrorThatNamesTheMesh) {
+    TestMesh m;
+    m.name = "Gravel";
+    for (int i = 0; i < 500; ++i) m.quad({i, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0});
+    Layout layout(settings(8.0f, 32));
+    layout.add_mesh(m.desc());
+    try {
+        layout.run();
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), AJAR_ERROR_INPUT);
+        EXPECT_EQ(e.culprit(), "Gravel");
+    }
+}
+
+TEST(ReceiverLayout, AVertexFarOutCostsOnlyItsOwnPolygons) {
+    TestMesh m;
+    for (int i = 0; i < 20; ++i) m.quad({i, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    m.polygon({{0, 0, 5}, {1e30f, 0, 5}, {0, 1, 5}});
+    EXPECT_LE(unwrap(m.unwrap_input(8.0), 0.7, 1000.0).charts.size(), 2u);
+}
+
+TEST(ReceiverUnwrap, FineMeshesAtLowDensityStillJoin) {
+    TestMesh m;
+    for (int y = 0; y < 40; ++y)
+        for (int x = 0; x < 40; ++x) m.quad({0.001f * x, 0.001f * y, 0}, {0.001f, 0, 0}, {0, 0.001f, 0});
+    EXPECT_LE(unwrap(m.unwrap_input(0.1), 0.7, 1000.0).charts.size(), 2u);
+}
+
 TEST(ReceiverLayout, WrongArgumentsAreErrors) {
     for (auto change : std::vector<void (*)(ajar_layout_settings&)>{
              [](ajar_layout_settings& s) { s.texels_per_meter = 0.0f; },

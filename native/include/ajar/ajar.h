@@ -141,6 +141,19 @@ typedef struct ajar_mesh_desc {
     const float* const* color_layers; /* [color_layer_count] of [3*triangle_count][4], linear */
 } ajar_mesh_desc;
 
+enum { AJAR_ELEMENT_LIGHT_SET = 0, AJAR_ELEMENT_DOOR = 1, AJAR_ELEMENT_TOGGLE = 2 };
+
+/* Something that changes at run time. Its weight: strength of a light set, openness of a door,
+ * presence of a toggle. Lights and instances name their elements, so elements are added first. */
+typedef struct ajar_element_desc {
+    uint32_t struct_size;
+    const char* name;
+    uint32_t kind;    /* AJAR_ELEMENT_* */
+    float weight;     /* at the start: light set in [0, inf), door and toggle in [0, 1] */
+    uint32_t combine; /* 0: takes part in no combination with other elements */
+    uint32_t bounce;  /* door: 0 makes the closed leaf black, 1 lets it reflect light */
+} ajar_element_desc;
+
 enum { AJAR_SURFACE_LIGHTMAP = 0, AJAR_SURFACE_OCCLUDER = 1 };
 enum { AJAR_VISIBLE_GATHER = 1, AJAR_VISIBLE_SHADOW = 2 };
 
@@ -158,6 +171,9 @@ typedef struct ajar_instance_desc {
     uint32_t page;
     float uv_scale[2];
     float uv_offset[2];
+    uint32_t element;   /* door or toggle this is a part of, or AJAR_NONE */
+    uint32_t open_pose; /* 1: part of a door that is there while it is open; 0: the closed leaf */
+    uint32_t light_set; /* light set that its emission belongs to, or AJAR_NONE */
 } ajar_instance_desc;
 
 enum { AJAR_LIGHT_POINT = 0, AJAR_LIGHT_SPOT = 1, AJAR_LIGHT_SUN = 2, AJAR_LIGHT_AREA_RECTANGLE = 3, AJAR_LIGHT_AREA_ELLIPSE = 4 };
@@ -179,6 +195,7 @@ typedef struct ajar_light_desc {
     float size_x, size_y; /* m: area, full extents in local x and y, before the transform's scale */
     float spread;         /* area: full emission angle, radians, pi = Lambertian */
     uint32_t casts_shadow;
+    uint32_t light_set;   /* light set it belongs to, or AJAR_NONE */
 } ajar_light_desc;
 
 enum { AJAR_SKY_NONE = 0, AJAR_SKY_CONSTANT = 1, AJAR_SKY_EQUIRECT = 2 };
@@ -197,6 +214,7 @@ AJAR_API void ajar_input_init(ajar_input* input);
 AJAR_API void ajar_closure_init(ajar_closure* closure);
 AJAR_API void ajar_material_desc_init(ajar_material_desc* desc);
 AJAR_API void ajar_mesh_desc_init(ajar_mesh_desc* desc);
+AJAR_API void ajar_element_desc_init(ajar_element_desc* desc);
 AJAR_API void ajar_instance_desc_init(ajar_instance_desc* desc);
 AJAR_API void ajar_light_desc_init(ajar_light_desc* desc);
 AJAR_API void ajar_sky_desc_init(ajar_sky_desc* desc);
@@ -210,6 +228,7 @@ AJAR_API ajar_result ajar_scene_release(ajar_scene* scene);
 AJAR_API ajar_result ajar_scene_add_texture(ajar_scene scene, const ajar_texture_desc* desc, uint32_t* out_id);
 AJAR_API ajar_result ajar_scene_add_material(ajar_scene scene, const ajar_material_desc* desc, uint32_t* out_id);
 AJAR_API ajar_result ajar_scene_add_mesh(ajar_scene scene, const ajar_mesh_desc* desc, uint32_t* out_id);
+AJAR_API ajar_result ajar_scene_add_element(ajar_scene scene, const ajar_element_desc* desc, uint32_t* out_id);
 AJAR_API ajar_result ajar_scene_add_instance(ajar_scene scene, const ajar_instance_desc* desc, uint32_t* out_id);
 AJAR_API ajar_result ajar_scene_add_light(ajar_scene scene, const ajar_light_desc* desc, uint32_t* out_id);
 AJAR_API ajar_result ajar_scene_add_page(ajar_scene scene, uint32_t width, uint32_t height, uint32_t* out_id);
@@ -222,6 +241,10 @@ AJAR_API ajar_result ajar_scene_warning(ajar_scene scene, uint32_t index, char* 
                                         char* culprit, uint64_t culprit_size);
 
 /* ---- bake --------------------------------------------------------------------------------- */
+
+/* Which products of elements are baked beside the single ones. */
+enum { AJAR_COMBINATIONS_NONE = 0, AJAR_COMBINATIONS_AUTO = 1, AJAR_COMBINATIONS_ALL = 2 };
+#define AJAR_MAX_TERM_ELEMENTS 4u
 
 typedef struct ajar_settings {
     uint32_t struct_size;
@@ -237,6 +260,9 @@ typedef struct ajar_settings {
     uint32_t stitch_seams;        /* 1: least-squares seam stitching */
     uint32_t keep_sh;             /* 1: keep 9-coefficient SH layers */
     uint32_t keep_bounces;        /* 1: keep the irradiance of every bounce apart (tests) */
+    uint32_t combinations;        /* AJAR_COMBINATIONS_* */
+    float term_threshold;         /* a texel keeps a term if lit by it directly or brighter than this share
+                                     of the term's mean indirect light there; 0 keeps all */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 
@@ -283,6 +309,23 @@ AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t l
                                          uint32_t* out_width, uint32_t* out_height, uint32_t* out_channels);
 /* Copies a layer into buffer of float_count floats. */
 AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t layer, float* buffer, uint64_t float_count);
+/* One term of the baked light, a product of elements (algorithms in Seyb et al. 2020, "The Design
+ * and Evolution of the UberBake Light Baking System"): light at any texel is the sum over terms of
+ * irradiance times the weights of the term's elements. Term 0 is the base, the product of none. */
+typedef struct ajar_term_info {
+    uint32_t struct_size;
+    uint32_t element_count;
+    uint32_t elements[AJAR_MAX_TERM_ELEMENTS]; /* element ids, ascending */
+    uint32_t is_signed;      /* 1: takes light away somewhere */
+    uint64_t texel_count;    /* texels that keep it */
+    float relative_error;    /* estimated standard error over the texels it keeps, relative to their mean */
+    float discarded;         /* share of the term's light at texels that do not keep it */
+} ajar_term_info;
+AJAR_API void ajar_term_info_init(ajar_term_info* info);
+AJAR_API ajar_result ajar_job_term_count(ajar_job job, uint32_t* out_count);
+AJAR_API ajar_result ajar_job_term(ajar_job job, uint32_t term, ajar_term_info* out_info);
+/* One page of a term's irradiance, 3 floats per texel, W/m^2, 0 where it is not kept; rows bottom-up. */
+AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer, uint64_t float_count);
 /* Report as UTF-8 JSON (schemas/report.schema.json). *size holds the buffer's size, and after the
  * call the size needed including the NUL; buffer may be NULL to ask. */
 AJAR_API ajar_result ajar_job_report(ajar_job job, char* buffer, uint64_t* size);

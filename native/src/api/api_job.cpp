@@ -20,6 +20,8 @@ ajar_settings checked_settings(const ajar_settings* settings) {
     if (!std::has_single_bit(s.bounce_samples) || s.bounce_samples > (1u << 16)) fail("bounce_samples must be a power of two up to 65536");
     if (s.direct_samples == 0 || s.direct_samples > (1u << 20)) fail("direct_samples must lie in 1..1048576");
     if (s.positions_per_texel == 0 || s.positions_per_texel > 16) fail("positions_per_texel must lie in 1..16");
+    if (s.combinations > AJAR_COMBINATIONS_ALL) fail("combinations has an unknown value");
+    if (!(s.term_threshold >= 0.0f) || s.term_threshold > 1.0f) fail("term_threshold must lie in 0..1");
     if (s.threads > 1024) fail("threads must be 1024 at most");
     return s;
 }
@@ -57,6 +59,30 @@ void copy_packed(const BakedPages& b, const Page& page, float* out) {
         std::memcpy(out + 2 * i, &b.packed_irradiance[page.first_texel + i], sizeof(float));
         std::memcpy(out + 2 * i + 1, &b.packed_direction[page.first_texel + i], sizeof(float));
     }
+}
+
+void fill_term(const Job& job, uint32_t index, ajar_term_info& out) {
+    const BakedPages& b = job.output().pages;
+    if (index > b.terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
+    init_struct(&out);
+    if (index == 0) {
+        out.texel_count = job.output().receivers.count();
+        return;
+    }
+    const BakedTerm& t = b.terms[index - 1];
+    out.element_count = static_cast<uint32_t>(t.elements.size());
+    std::copy(t.elements.begin(), t.elements.end(), out.elements);
+    out.is_signed = t.is_signed;
+    out.texel_count = t.texel.size();
+    out.relative_error = t.relative_error;
+    out.discarded = t.discarded;
+}
+
+void copy_term(const BakedTerm& term, const Page& page, float* out) {
+    const uint64_t texels = uint64_t{page.width} * page.height;
+    std::memset(out, 0, 3 * texels * sizeof(float));
+    for (size_t i = 0; i < term.texel.size(); ++i)
+        if (const uint64_t local = term.texel[i] - page.first_texel; local < texels) std::memcpy(out + 3 * local, &term.irradiance[i], sizeof(Vec3));
 }
 
 } // namespace
@@ -140,6 +166,37 @@ AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t l
         if (buffer == nullptr || float_count < needed) throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the layer");
         if (l.data == nullptr) copy_packed(output.pages, p, buffer);
         else std::memcpy(buffer, l.data + p.first_texel * l.channels, needed * sizeof(float));
+        return AJAR_OK;
+    });
+}
+
+AJAR_API ajar_result ajar_job_term_count(ajar_job job, uint32_t* out) {
+    return guarded([&] {
+        const auto j = jobs().get(job);
+        required(out) = static_cast<uint32_t>(j->output().pages.terms.size()) + 1;
+        return AJAR_OK;
+    });
+}
+
+AJAR_API ajar_result ajar_job_term(ajar_job job, uint32_t term, ajar_term_info* out) {
+    return guarded([&] {
+        const auto j = jobs().get(job);
+        checked(out);
+        fill_term(*j, term, *out);
+        return AJAR_OK;
+    });
+}
+
+AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer, uint64_t float_count) {
+    return guarded([&] {
+        const auto j = jobs().get(job);
+        const BakedPages& b = j->output().pages;
+        const Page& p = find_page(*j, page);
+        const uint64_t needed = uint64_t{3} * p.width * p.height;
+        if (term > b.terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
+        if (buffer == nullptr || float_count < needed) throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the page");
+        if (term == 0) std::memcpy(buffer, &b.irradiance[p.first_texel], needed * sizeof(float));
+        else copy_term(b.terms[term - 1], p, buffer);
         return AJAR_OK;
     });
 }

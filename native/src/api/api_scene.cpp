@@ -41,6 +41,7 @@ AJAR_API ajar_result ajar_scene_release(ajar_scene* scene) {
 AJAR_API ajar_result ajar_scene_add_texture(ajar_scene s, const ajar_texture_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_texture); }
 AJAR_API ajar_result ajar_scene_add_material(ajar_scene s, const ajar_material_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_material); }
 AJAR_API ajar_result ajar_scene_add_mesh(ajar_scene s, const ajar_mesh_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_mesh); }
+AJAR_API ajar_result ajar_scene_add_element(ajar_scene s, const ajar_element_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_element); }
 AJAR_API ajar_result ajar_scene_add_instance(ajar_scene s, const ajar_instance_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_instance); }
 AJAR_API ajar_result ajar_scene_add_light(ajar_scene s, const ajar_light_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_light); }
 

@@ -36,6 +36,13 @@ AJAR_API void ajar_closure_init(ajar_closure* c) {
 AJAR_API void ajar_material_desc_init(ajar_material_desc* d) { init_struct(d); }
 AJAR_API void ajar_mesh_desc_init(ajar_mesh_desc* d) { init_struct(d); }
 
+AJAR_API void ajar_element_desc_init(ajar_element_desc* d) {
+    if (d == nullptr) return;
+    init_struct(d);
+    d->weight = 1.0f;
+    d->combine = d->bounce = 1;
+}
+
 AJAR_API void ajar_instance_desc_init(ajar_instance_desc* d) {
     if (d == nullptr) return;
     init_struct(d);
@@ -44,6 +51,7 @@ AJAR_API void ajar_instance_desc_init(ajar_instance_desc* d) {
     d->visibility = AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW;
     d->lightmap_layer = d->page = AJAR_NONE;
     d->uv_scale[0] = d->uv_scale[1] = 1.0f;
+    d->element = d->light_set = AJAR_NONE;
 }
 
 AJAR_API void ajar_light_desc_init(ajar_light_desc* d) {
@@ -54,6 +62,7 @@ AJAR_API void ajar_light_desc_init(ajar_light_desc* d) {
     d->energy = d->size_x = d->size_y = 1.0f;
     d->spot_angle = d->spread = std::numbers::pi_v<float>;
     d->casts_shadow = 1;
+    d->light_set = AJAR_NONE;
 }
 
 AJAR_API void ajar_sky_desc_init(ajar_sky_desc* d) {
@@ -72,8 +81,11 @@ AJAR_API void ajar_settings_init(ajar_settings* s) {
     s->direct_samples = 64;
     s->positions_per_texel = 4;
     s->stitch_seams = 1;
+    s->combinations = AJAR_COMBINATIONS_AUTO;
+    s->term_threshold = 0.01f;
 }
 
+AJAR_API void ajar_term_info_init(ajar_term_info* t) { init_struct(t); }
 AJAR_API void ajar_progress_init(ajar_progress* p) { init_struct(p); }
 
 AJAR_API void ajar_layout_settings_init(ajar_layout_settings* s) {

@@ -75,6 +75,7 @@ json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& se
             effect("sky", s.sky.lit(), !s.sky.lit() ? "no sky or black" : o.sky_sampled ? "image, importance sampled" : "constant"),
             effect("transparency", transmissive != 0, n(transmissive) + " materials"),
             effect("surfaces without lightmap", unmapped != 0, n(unmapped) + " objects"),
+            effect("aiming at bright texels", o.bake.bright_texels != 0, n(o.bake.bright_texels) + " texels"),
             effect("bounces", settings.bounces != 0, n(settings.bounces) + " bounces"),
             effect("seam stitching", o.pages.seam_points != 0, n(o.pages.seam_points) + " seam points")};
 }

@@ -88,6 +88,10 @@ template <class T> std::span<const T> part_of(const std::vector<T>& v, const Pag
     return v.empty() ? std::span<const T>{} : std::span<const T>{&v[p.first_texel * channels], channels * p.width * p.height};
 }
 
+const char* kind_name(ElementKind kind) {
+    return kind == ElementKind::light_set ? "light_set" : kind == ElementKind::door ? "door" : "toggle";
+}
+
 } // namespace
 
 BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result, const ajar_settings& settings,
@@ -119,7 +123,11 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
     }
     for (const Instance& i : scene.instances)
         if (i.lightmapped) c.instances.push_back({i.name, i.page, {i.uv_scale.x, i.uv_scale.y}, {i.uv_offset.x, i.uv_offset.y}, "AjarLightmap"});
-    for (const Light& l : scene.lights) c.lights.push_back({l.name, l.primary ? "primary" : "static"});
+    for (const Element& e : scene.elements) c.elements.push_back({e.name, kind_name(e.kind), e.weight});
+    for (const Light& l : scene.lights)
+        c.lights.push_back({l.name, l.primary ? "primary" : "static", l.light_set == kNoElement ? "" : scene.elements[l.light_set].name});
+    for (const BakedTerm& t : baked.terms)
+        c.terms.push_back({t.elements, t.is_signed, t.relative_error, t.discarded, t.texel, {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()}, t.packed_direction});
     return c;
 }
 

@@ -7,6 +7,16 @@
 
 namespace ajar {
 
+/// One term over the texels that keep it, sorted by texel (index over all pages).
+struct BakedTerm {
+    std::vector<uint32_t> elements;
+    bool is_signed = false;
+    float relative_error = 0.0f, discarded = 0.0f;
+    std::vector<uint32_t> texel;
+    std::vector<Vec3> irradiance;
+    std::vector<uint32_t> packed_direction;
+};
+
 /// The bake over all texels of all pages, ready to be stored or read by the caller.
 struct BakedPages {
     std::vector<Vec3> irradiance, albedo;
@@ -14,6 +24,7 @@ struct BakedPages {
     std::vector<float> sh_rgb; ///< [texels][27] or empty
     std::vector<uint32_t> packed_irradiance, packed_direction;
     std::vector<std::vector<Vec3>> bounces;
+    std::vector<BakedTerm> terms; ///< all but the base, which the arrays above hold
     uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
     uint64_t seam_points = 0;
     uint64_t clamped_texels = 0;  ///< too bright for the packed format

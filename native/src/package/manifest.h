@@ -33,6 +33,26 @@ struct PackageInstance {
 struct PackageLight {
     std::string name;
     std::string role; ///< "primary" or "static"
+    std::string light_set = {}; ///< name, or empty
+};
+
+/// A light set, door or toggle; terms name elements by their index.
+struct PackageElement {
+    std::string name;
+    std::string kind; ///< "light_set", "door" or "toggle"
+    float weight = 1.0f; ///< at the start
+};
+
+/// Baked light of a product of elements, at the texels that keep it. The base is no term here: the
+/// pages hold it. Arrays stay owned by the caller while the package is written.
+struct PackageTerm {
+    std::vector<uint32_t> elements;      ///< ascending, never empty
+    bool is_signed = false;              ///< some irradiance is negative
+    float relative_error = 0.0f;         ///< standard error of the mean term at a texel, relative
+    float discarded = 0.0f;              ///< share of its light at texels that do not keep it
+    std::span<const uint32_t> texel;     ///< ascending index over all pages' texels, page after page, bottom row first
+    std::span<const float> irradiance;   ///< [count][3], W/m^2 along the shading normal
+    std::span<const uint32_t> direction; ///< [count] RGBA8 as in packed_direction, of irradiance / its sign
 };
 
 /// All that a package holds.
@@ -42,6 +62,8 @@ struct PackageContent {
     std::vector<PackagePage> pages;
     std::vector<PackageInstance> instances;
     std::vector<PackageLight> lights;
+    std::vector<PackageElement> elements;
+    std::vector<PackageTerm> terms;
 };
 
 /// File names of a page's images, e.g. "page_0.irradiance.exr".

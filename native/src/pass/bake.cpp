@@ -18,6 +18,7 @@ constexpr uint32_t kPilotRays = 64;
 constexpr uint32_t kPilotReceivers = 8;   ///< of each tile
 constexpr uint32_t kCalibrationStep = 4;  ///< every n-th tile is estimated twice
 constexpr float kFinalShare = 0.5f;       ///< cosine share of the final rays (algorithms.md 1.10)
+constexpr double kBrightFactor = 6.0;     ///< of the mean radiance; brighter texels are aimed at
 constexpr float kQuadNormal = 0.95f;      ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 enum Salt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
@@ -34,6 +35,25 @@ Vec3 sum_of(const TileSums& s, uint32_t lane) { return {s.irradiance[0][lane], s
 /// is a ratio estimator: it cancels the noise of the weights, so a uniform room stays uniform.
 Vec3 gathered(const TileSums& s, uint32_t lane) {
     return s.cosine_sum[lane] > 0.0f ? sum_of(s, lane) * (kPi / s.cosine_sum[lane]) : Vec3(0.0f);
+}
+
+/// The parallelogram that a texel covers on its triangle.
+BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
+    const uint32_t triangle = receivers.triangle[r];
+    const Triangle& t = scene.triangles[triangle];
+    const auto uv = texel_triangle(scene, triangle);
+    const Page& page = scene.pages[scene.instance_of(triangle).page];
+    const auto local = static_cast<uint32_t>(receivers.texel[r] - page.first_texel);
+    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = Vec2(local % page.width, local / page.width) + 0.5f - uv[0];
+    const float det = a.x * b.y - a.y * b.x;
+    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin, eb = scene.positions[t.vertex[2]] - origin;
+    BrightTexel out;
+    out.texel = receivers.texel[r];
+    out.edge_x = (ea * b.y - eb * a.y) / det;
+    out.edge_y = (eb * a.x - ea * b.x) / det;
+    out.center = origin + out.edge_x * c.x + out.edge_y * c.y;
+    out.normal = scene.geometric_normal(triangle);
+    return out;
 }
 
 uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
@@ -93,27 +113,48 @@ void Baker::direct_source() {
         LightChoice choice(s_.emitters, LightRoles::all);
         uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
         auto direct = make_sums(false), gather = make_sums(false);
-        MisCounts mis{rays_needed ? static_cast<float>(settings_.bounce_samples) : 0.0f, 1.0f, kSourceSamples};
+        const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
+        const MisCounts mis{static_cast<float>(gather_rays), 1.0f, kSourceSamples};
         rays += sample_direct(s_.scene, s_.tracer, s_.emitters, choice, s_.receivers, tile, kSourceSamples, mis, seed, *direct);
         if (rays_needed) {
             GatherOptions o;
-            o.samples = settings_.bounce_samples;
+            o.samples = gather_rays;
             o.emission = true;
             o.direct_samples = kSourceSamples;
             o.choice = &choice;
             o.seed = seed;
             rays += gather_tile(s_, tile, o, *gather);
         }
-        for (uint32_t lane = 0; lane < tile.count; ++lane)
-            current_[tile.first + lane] = sum_of(*direct, lane) / static_cast<float>(kSourceSamples) + gathered(*gather, lane);
+        share_quads(tile, *gather, current_);
+        for (uint32_t lane = 0; lane < tile.count; ++lane) current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
         progress_.add_rays(rays);
     });
     keep_bounce(current_);
 }
 
-/// One bounce: irradiance from radiance_ into current_. The receivers of a 2x2 block of texels
-/// with like normals split the rays and share the mean, which is enough for light that will be
-/// gathered once more.
+/// Mean irradiance of the receivers of each 2x2 block with like normals. Enough for light that will
+/// be gathered once more, with a quarter of the rays.
+void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const {
+    const auto quad = [&](uint32_t r) {
+        const Page& page = s_.scene.pages[s_.scene.instance_of(s_.receivers.triangle[r]).page];
+        const auto local = static_cast<uint32_t>(s_.receivers.texel[r] - page.first_texel);
+        return std::pair{(local % page.width) / 2, local / page.width / 2};
+    };
+    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        const uint32_t r = tile.first + lane;
+        Vec3 total(0.0f);
+        float count = 0.0f;
+        for (uint32_t other = lane >= 3 ? lane - 3 : 0; other < std::min(lane + 4, tile.count); ++other) {
+            const uint32_t q = tile.first + other;
+            if (quad(q) != quad(r) || glm::dot(s_.receivers.frame[q].z, s_.receivers.frame[r].z) < kQuadNormal) continue;
+            total += gathered(sums, other);
+            count += 1.0f;
+        }
+        out[r] = total / count;
+    }
+}
+
+/// One bounce: irradiance from radiance_ into current_.
 void Baker::bounce(uint32_t index) {
     pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
@@ -124,34 +165,19 @@ void Baker::bounce(uint32_t index) {
         o.unmapped_direct = index == 1;
         o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
         progress_.add_rays(gather_tile(s_, tile, o, *sums));
-        const auto quad = [&](uint32_t r) {
-            const Page& page = s_.scene.pages[s_.scene.instance_of(s_.receivers.triangle[r]).page];
-            const auto local = static_cast<uint32_t>(s_.receivers.texel[r] - page.first_texel);
-            return std::pair{(local % page.width) / 2, local / page.width / 2};
-        };
-        for (uint32_t lane = 0; lane < tile.count; ++lane) {
-            const uint32_t r = tile.first + lane;
-            Vec3 total(0.0f);
-            float count = 0.0f;
-            for (uint32_t other = lane >= 3 ? lane - 3 : 0; other < std::min(lane + 4, tile.count); ++other) {
-                const uint32_t q = tile.first + other;
-                if (quad(q) != quad(r) || glm::dot(s_.receivers.frame[q].z, s_.receivers.frame[r].z) < kQuadNormal) continue;
-                total += gathered(*sums, other);
-                count += 1.0f;
-            }
-            current_[r] = total / count;
-        }
+        share_quads(tile, *sums, current_);
     });
     keep_bounce(current_);
 }
 
 Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh) {
     TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
-    LightChoice choice(s_.emitters, LightRoles::stored);
+    const GatherScene scene = final_scene();
+    LightChoice choice(scene.emitters, LightRoles::stored);
     uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
     if (choice.empty()) t.plan.direct = 0;
     const MisCounts mis{static_cast<float>(plan.gather), kFinalShare, static_cast<float>(t.plan.direct)};
-    if (t.plan.direct != 0) rays += sample_direct(s_.scene, s_.tracer, s_.emitters, choice, s_.receivers, tile, t.plan.direct, mis, seed, *t.direct);
+    if (t.plan.direct != 0) rays += sample_direct(s_.scene, s_.tracer, scene.emitters, choice, s_.receivers, tile, t.plan.direct, mis, seed, *t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
         o.samples = plan.gather;
@@ -162,10 +188,35 @@ Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t
         o.direct_samples = t.plan.direct;
         o.choice = &choice;
         o.seed = seed;
-        rays += gather_tile(s_, tile, o, *t.gather);
+        rays += gather_tile(scene, tile, o, *t.gather);
     }
     progress_.add_rays(rays);
     return t;
+}
+
+/// Only texels that one triangle fills can be aimed at exactly; what stands out elsewhere is left
+/// to the gather.
+EmitterSet Baker::find_bright_texels() {
+    std::vector<BrightTexel> bright;
+    if (settings_.bounces > 0) {
+        double mean = 0.0, weight = 0.0;
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
+            const double area = double(s_.receivers.texel_size[r]) * s_.receivers.texel_size[r];
+            mean += area * luminance(Vec3(radiance_[s_.receivers.texel[r]]));
+            weight += area;
+        }
+        const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
+            Vec4& radiance = radiance_[s_.receivers.texel[r]];
+            if (!s_.receivers.full[r] || !(luminance(Vec3(radiance)) > threshold)) continue;
+            BrightTexel t = bright_texel(s_.scene, s_.receivers, r);
+            t.radiance = Vec3(radiance);
+            radiance.w = 1.0f;
+            bright.push_back(t);
+        }
+    }
+    result_.bright_texels = static_cast<uint32_t>(bright.size());
+    return s_.emitters.with_bright_texels(std::move(bright));
 }
 
 /// Pilot: few receivers of every tile with few rays, discarded afterwards; their pooled variance
@@ -296,6 +347,7 @@ BakeResult Baker::run() {
             for (size_t i = 0; i < current_.size(); ++i) result_.source[i] -= result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
         set_radiance(result_.source);
     }
+    final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     const std::vector<Plan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);

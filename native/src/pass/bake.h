@@ -3,6 +3,7 @@
 
 #include "transport/gather.h"
 
+#include <memory>
 #include <vector>
 
 namespace ajar {
@@ -19,6 +20,7 @@ struct BakeResult {
     std::vector<Vec3> source;           ///< irradiance of all lights and bounces that the final gather reflected
 
     std::vector<double> bounce_means;   ///< mean luminance of each bounce's irradiance
+    uint32_t bright_texels = 0;         ///< aimed at by the final gather
     float error_calibration = 1.0f;     ///< measured standard error over the strata estimate
     bool time_limited = false;          ///< the time limit, not the target, set the ray counts
 };
@@ -38,6 +40,9 @@ private:
     void direct_source();
     void bounce(uint32_t index);
     void set_radiance(const std::vector<Vec3>& irradiance);
+    void share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const;
+    /// Emitters of the final gather: the scene's, and the texels that stand out.
+    EmitterSet find_bright_texels();
     void keep_bounce(const std::vector<Vec3>& irradiance);
     std::vector<Plan> plan_rays();
     void limit_time(std::vector<Plan>& plan, double seconds_per_ray);
@@ -45,6 +50,7 @@ private:
     void final_gather(const std::vector<Plan>& plan);
     void calibrate_error(const std::vector<Plan>& plan);
     bool gathers() const;
+    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers}; }
 
     GatherScene s_;
     ajar_settings settings_;
@@ -52,7 +58,8 @@ private:
     Progress& progress_;
     BakeResult result_;
     std::vector<Vec3> current_;  ///< irradiance of the bounce in hand
-    std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees
+    std::unique_ptr<EmitterSet> final_emitters_;
+    std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees; w = 1: bright texel
 };
 
 } // namespace ajar

@@ -15,6 +15,7 @@ namespace {
 constexpr uint32_t kNone = 0xffffffffu;
 constexpr double kCoplanarCos = 0.99985; ///< cos of 1 degree
 constexpr double kCoplanarOffset = 0.1;  ///< texels a coplanar polygon may stand off the plane
+constexpr double kThinShare = 0.02;      ///< and of their longest edge
 constexpr double kThin = 0.05;           ///< texels: thinner polygons have unreliable normals
 constexpr double kSamplesPerTexel = 4.0; ///< of the overlap test
 constexpr double kMostSamples = 6.4e7;   ///< per chart; larger charts are tested more coarsely
@@ -33,6 +34,11 @@ struct Box2 {
     double extent() const { return std::max(high.x - low.x, high.y - low.y); }
 };
 
+/// A sliver, on the scale of a texel as well as of its own length.
+bool is_thin(const UnwrapFace& face) {
+    return face.thickness < kThin && face.thickness * face.thickness <= kThinShare * face.area;
+}
+
 class Grower {
 public:
     Grower(const UnwrapMesh& mesh, const FaceGraph& graph, const std::vector<uint8_t>& wanted, double angle,
@@ -45,7 +51,7 @@ public:
           open_(wanted),
           chart_of_(wanted.size(), kNone) {
         for (uint32_t f = 0; f < open_.size(); ++f)
-            if (open_[f] && graph.faces()[f].thickness < kThin) {
+            if (open_[f] && is_thin(graph.faces()[f])) {
                 open_[f] = 0;
                 if (graph.faces()[f].finite) thin_.push_back(f);
             }
@@ -303,24 +309,33 @@ private:
         return false;
     }
 
-    /// Thin polygons join the chart they share most edge length with; isolated ones pair up.
+    /// Thin polygons join the chart they share most edge length with; those without one start theirs.
     void attach_thin() {
-        bool progress = true;
-        while (progress && !thin_.empty()) {
-            progress = false;
-            for (uint32_t& f : thin_) {
-                const uint32_t chart = best_neighbour(f);
-                if (chart == kNone) continue;
-                chart_of_[f] = chart;
-                result_.charts[chart].polygons.push_back(f);
-                f = kNone;
-                progress = true;
-            }
-            std::erase(thin_, kNone);
-        }
+        std::vector<uint8_t> waiting(open_.size(), 0);
+        for (uint32_t f : thin_) waiting[f] = 1;
+        spread(thin_, waiting);
+        std::stable_sort(thin_.begin(), thin_.end(),
+                         [&](uint32_t a, uint32_t b) { return face(a).area > face(b).area; });
         for (uint32_t f : thin_) {
-            if (face(f).area <= 0.0 || glm::length(face(f).normal) < 0.5) continue; // degenerate: not a chart
+            if (!waiting[f] || glm::length(face(f).normal) < 0.5) continue; // without area it is no chart
+            waiting[f] = 0;
+            chart_of_[f] = uint32_t(result_.charts.size());
             result_.charts.push_back({face(f).normal, {f}});
+            std::vector<uint32_t> next;
+            for (const FaceLink& link : graph_.links(f)) next.push_back(link.face);
+            spread(std::move(next), waiting);
+        }
+    }
+
+    /// Gives waiting polygons to their neighbours' charts, and on from there.
+    void spread(std::vector<uint32_t> work, std::vector<uint8_t>& waiting) {
+        for (size_t i = 0; i < work.size(); ++i) {
+            const uint32_t f = work[i], chart = waiting[f] ? best_neighbour(f) : kNone;
+            if (chart == kNone) continue;
+            waiting[f] = 0;
+            chart_of_[f] = chart;
+            result_.charts[chart].polygons.push_back(f);
+            for (const FaceLink& link : graph_.links(f)) work.push_back(link.face);
         }
     }
 

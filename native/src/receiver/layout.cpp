@@ -11,6 +11,8 @@
 namespace ajar {
 namespace {
 
+constexpr int kFineShrinks = 12; ///< density steps of kShrink before larger ones
+constexpr double kCoarseShrink = 0.75;
 constexpr double kShrink = 0.93;     ///< density step while an object does not fit
 constexpr double kTestAlone = 0.6;   ///< share of a page above which an object is tested alone first
 constexpr double kExtentShare = 0.7; ///< of the page edge: longest chart grown; its diagonal still fits
@@ -34,6 +36,7 @@ struct Work {
     double local_density = 1.0;       ///< of the local rectangle: that of the coarsest user
     std::vector<double> user_density; ///< per user of a shared mesh, relative to the local rectangle
     uint32_t first_group = 0, first_item = 0;
+    int shrinks = 0;
 
     bool shared() const { return unwrapped.user_factor.size() > 1; }
     const std::vector<Chart>& charts() const { return unwrapped.charts.charts; }
@@ -105,6 +108,18 @@ struct Layout::Impl {
             std::min({1.0, usable_edge() / std::max(longest, 1e-9), usable_edge() / std::sqrt(std::max(area, 1e-9))});
     }
 
+    /// Takes a density step, or gives up if every chart is down to one texel.
+    void shrink(const LayoutMesh& mesh, Work& w) const {
+        const auto least = [](const TexelFit& fit) { return fit.width == 1 && fit.height == 1; };
+        if (std::all_of(w.fits.begin(), w.fits.end(), least))
+            throw Error(
+                AJAR_ERROR_INPUT,
+                "Mesh \"" + mesh.name + "\" has " + std::to_string(w.fits.size()) +
+                    " charts, more than one lightmap page takes. Split it, raise the page size or lower the padding.",
+                mesh.name);
+        w.density *= w.shrinks++ < kFineShrinks ? kShrink : kCoarseShrink;
+    }
+
     /// Packs a shared mesh into a rectangle of its own, at the density of its coarsest user so that
     /// padding suffices for all.
     void pack_local(const LayoutMesh& mesh, Work& w) {
@@ -112,7 +127,7 @@ struct Layout::Impl {
         const double coarsest = *std::min_element(factor.begin(), factor.end());
         const bool mixed = *std::max_element(factor.begin(), factor.end()) > coarsest * 1.0001;
         const uint32_t padding = settings.padding + (mixed ? 1 : 0); // scaled texels no longer align
-        for (PagePlan local;; w.density *= kShrink) {
+        for (PagePlan local;; shrink(mesh, w)) {
             items.clear();
             shapes.clear();
             w.local_density = w.density * coarsest;
@@ -174,7 +189,7 @@ struct Layout::Impl {
 
     /// Shrinks a large object with one user until it fits into an empty page.
     void fit_alone(const LayoutMesh& mesh, Work& w) {
-        for (;; w.density *= kShrink) {
+        for (;; shrink(mesh, w)) {
             items.clear();
             shapes.clear();
             add_charts(mesh, w, w.density, 0);
@@ -225,7 +240,7 @@ struct Layout::Impl {
             if (w.shared())
                 w.user_density[group - w.first_group] *= kShrink;
             else
-                w.density *= kShrink;
+                shrink(meshes[m], w);
         }
     }
 

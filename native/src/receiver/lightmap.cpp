@@ -212,6 +212,7 @@ void Builder::set_frame(uint32_t r) {
     out.frame[r] = frame_from_tangent(n, du, glm::dot(glm::cross(n, du), dv) < 0.0f ? -1.0f : 1.0f);
     out.texel_size[r] = std::sqrt(2.0f * scene.area(triangle) / std::abs(det));
     out.ring[r] = coverage.fragments[begin].ring;
+    out.full[r] = end - begin == 1 && !coverage.fragments[begin].ring && coverage.fragments[begin].area > 0.9999f;
 }
 
 void Builder::set_albedo(uint32_t r) {
@@ -267,6 +268,7 @@ LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, co
     b.out.albedo.resize(count);
     b.out.texel_size.resize(count);
     b.out.ring.resize(count);
+    b.out.full.resize(count);
     b.out.positions.resize(count * positions_per_texel);
     pool.for_each(b.out.tiles.size(), progress, [&](size_t i) {
         for (uint32_t r = b.out.tiles[i].first; r < b.out.tiles[i].first + b.out.tiles[i].count; ++r) b.build(r);

@@ -25,6 +25,7 @@ struct LightmapReceivers {
     std::vector<Vec3> positions;    ///< [count][positions_per_texel] ray origins, off the surface
     std::vector<Vec3> albedo;       ///< mean reflectance over the texel
     std::vector<float> texel_size;  ///< m
+    std::vector<uint8_t> full;      ///< one triangle covers the whole texel
     std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
     uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
     uint64_t pushed_positions = 0;

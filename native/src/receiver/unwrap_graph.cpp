@@ -9,6 +9,8 @@
 namespace ajar {
 namespace {
 
+constexpr double kTouchShare = 0.05;     ///< the same as a share of the mean open edge, if that is less
+constexpr double kMostSteps = 65536.0;   ///< along one edge; edges still longer than that are not split
 constexpr double kTouchTolerance = 0.02; ///< texels a vertex may stand off an edge it splits
 
 /// One side of a (part of an) edge: welded end points, smaller index first.
@@ -59,7 +61,7 @@ double weld_tolerance(const std::vector<glm::dvec3>& points) {
     if (low.x > high.x) return 1e-6;
     const glm::dvec3 reach = glm::max(glm::abs(low), glm::abs(high));
     const double rounding = std::max({reach.x, reach.y, reach.z}) * 4.0 * 1.2e-7;
-    return std::max({1e-6 * glm::length(high - low), rounding, 1e-12});
+    return std::min(std::max({1e-6 * glm::length(high - low), rounding, 1e-12}), kTouchTolerance);
 }
 
 /// Index of the first vertex at (about) the same place, for every vertex.
@@ -103,7 +105,10 @@ std::vector<HalfEdge> collect_edges(const UnwrapMesh& mesh, const std::vector<Un
 class EdgeSplitter {
 public:
     EdgeSplitter(const std::vector<glm::dvec3>& points, const std::vector<HalfEdge>& open, double tolerance)
-        : points_(points), tolerance_(tolerance), cell_(cell_size(open)), grid_(2.0 * cell_, open.size()) {
+        : points_(points),
+          cell_(cell_size(open)),
+          tolerance_(std::min(tolerance, kTouchShare * cell_)),
+          grid_(2.0 * cell_, open.size()) {
         std::vector<uint32_t> ends;
         for (const HalfEdge& e : open) ends.insert(ends.end(), {e.a, e.b});
         std::sort(ends.begin(), ends.end());
@@ -133,7 +138,8 @@ private:
         on_edge_.clear();
         const glm::dvec3 a = points_[edge.a], d = points_[edge.b] - a;
         const double end_margin = 0.5 * tolerance_ / edge.length;
-        const int steps = int(std::min(std::ceil(edge.length / cell_), 4096.0));
+        if (!(edge.length <= kMostSteps * cell_)) return;
+        const int steps = int(std::ceil(edge.length / cell_));
         const double radius = 0.5 * edge.length / steps + tolerance_;
         for (int s = 0; s < steps; ++s) {
             grid_.near(a + d * ((s + 0.5) / steps), radius, [&](uint32_t v, const glm::dvec3& p) {
@@ -147,7 +153,7 @@ private:
     }
 
     const std::vector<glm::dvec3>& points_;
-    double tolerance_, cell_;
+    double cell_, tolerance_;
     PointGrid grid_;
     std::vector<std::pair<double, uint32_t>> on_edge_;
 };
@@ -175,7 +181,7 @@ FaceGraph::FaceGraph(const UnwrapMesh& mesh) {
     const double tolerance = weld_tolerance(mesh.positions);
     const std::vector<uint32_t> welded = weld(mesh.positions, tolerance);
     std::vector<HalfEdge> edges = collect_edges(mesh, faces_, welded);
-    edges = split_open_edges(mesh.positions, edges, std::max(tolerance, kTouchTolerance));
+    edges = split_open_edges(mesh.positions, edges, kTouchTolerance);
 
     struct Pair {
         uint32_t face;

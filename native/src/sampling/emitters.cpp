@@ -21,14 +21,14 @@ float mean_emission(const Snapshot& s, uint32_t triangle) {
     float sum = 0.0f;
     for (int i = 0; i < kEmissionSamples; ++i) {
         const Vec2 b = sample_triangle(owen_sobol(i, triangle));
-        sum += luminance(s.surface(triangle, b.x, b.y).emission);
+        sum += luminance(s.emission(triangle, b.x, b.y));
     }
     return sum / kEmissionSamples;
 }
 
 } // namespace
 
-EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress) : scene_(scene), sky_(scene.sky) {
+EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress) : scene_(scene), sky_(std::make_shared<SkySampler>(scene.sky)) {
     for (uint32_t i = 0; i < scene.lights.size(); ++i)
         if (!scene.lights[i].dark()) emitters_.push_back({Kind::lamp, i});
     collect(pool, progress);
@@ -36,10 +36,11 @@ EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progre
     triangle_density_.resize(triangles_.empty() ? 0 : scene.triangles.size(), 0.0f);
     triangle_emitter_.resize(triangles_.empty() ? 0 : scene.triangles.size(), kNone);
     if (!triangles_.empty()) split(0, static_cast<uint32_t>(triangles_.size()));
-    if (sky_.total() > 0.0f) {
+    if (sky_->total() > 0.0f) {
         sky_emitter_ = count();
         emitters_.push_back({Kind::sky, 0});
     }
+    weigh_for_anywhere();
 }
 
 void EmitterSet::collect(ThreadPool& pool, Progress& progress) {
@@ -126,13 +127,14 @@ float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3
 float EmitterSet::importance(uint32_t e, const Vec3& p, const Vec3& n) const {
     const Emitter& emitter = emitters_[e];
     if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].importance(p, n);
-    if (emitter.kind == Kind::cluster) return cluster_importance(clusters_[emitter.index], p, n);
-    return 0.25f * sky_.total();
+    if (emitter.kind != Kind::sky) return cluster_importance(clusters_[emitter.index], p, n);
+    return 0.25f * sky_->total();
 }
 
 EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const {
     const Emitter& emitter = emitters_[e];
     if (emitter.kind == Kind::cluster) return sample_cluster(clusters_[emitter.index], p, u);
+    if (emitter.kind == Kind::bright) return sample_bright(clusters_[emitter.index], p, u);
     if (emitter.kind == Kind::sky) return sample_sky(u);
     const Light& light = scene_.lights[emitter.index];
     const LightSample s = light.sample(p, u);
@@ -155,13 +157,13 @@ EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u
     if (cosine < 0.0f && two_sided(scene_, t.triangle)) cosine = -cosine;
     if (!(cosine > 0.0f)) return {};
     const float density = triangle_pdf(t.triangle, length, cosine);
-    const Vec3 emission = scene_.surface(t.triangle, b.x, b.y).emission;
+    const Vec3 emission = scene_.emission(t.triangle, b.x, b.y);
     return {w, length, q, emission / density, density, true};
 }
 
 EmitterSample EmitterSet::sample_sky(const Vec2& u) const {
     float density;
-    const Vec3 w = sky_.sample(u, density);
+    const Vec3 w = sky_->sample(u, density);
     if (!(density > 0.0f)) return {};
     return {w, std::numeric_limits<float>::infinity(), Vec3(0.0f), scene_.sky.radiance(w) / density, density, true};
 }

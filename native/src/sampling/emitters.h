@@ -5,6 +5,7 @@
 #include "sampling/sky_sampler.h"
 #include "scene/snapshot.h"
 
+#include <memory>
 #include <vector>
 
 namespace ajar {
@@ -17,6 +18,16 @@ struct EmitterSample {
     Vec3 weight{0.0f};       ///< W/m^2 facing the light, divided by the pdf inside this emitter
     float pdf = 0.0f;        ///< per steradian inside this emitter; 0 for lamps, which rays never hit
     bool casts_shadow = true;
+};
+
+/// A lightmap texel that is so bright that it is worth aiming at: a parallelogram that reflects
+/// radiance from its front.
+struct BrightTexel {
+    uint32_t texel;      ///< index over all pages
+    Vec3 center{0.0f};
+    Vec3 edge_x{0.0f}, edge_y{0.0f};
+    Vec3 normal{0.0f};
+    Vec3 radiance{0.0f}; ///< W/(m^2 sr)
 };
 
 /// Everything that next-event estimation can aim at: lamps, clusters of emissive triangles, an
@@ -39,12 +50,20 @@ public:
     float triangle_pdf(uint32_t triangle, float distance, float cosine) const;
     /// Emitter of the image sky, or kNone.
     uint32_t sky_emitter() const { return sky_emitter_; }
-    float sky_pdf(const Vec3& w) const { return sky_.pdf(w); }
+    float sky_pdf(const Vec3& w) const { return sky_->pdf(w); }
     uint32_t emissive_triangles() const { return emissive_count_; }
+
+    /// This set plus bright texels; neighbours in the list with like normals share an emitter.
+    EmitterSet with_bright_texels(std::vector<BrightTexel> texels) const;
+    /// Emitter of a bright texel and its pick density per square metre; kNone for other texels.
+    uint32_t bright_emitter(uint32_t texel, float& density) const;
+    /// Picks a lamp, emissive cluster or sky (no bright texel) for a point anywhere, roughly by
+    /// importance; kNone if nothing lights it.
+    uint32_t pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, float& chance) const;
     static constexpr uint32_t kNone = 0xffffffffu;
 
 private:
-    enum class Kind { lamp, cluster, sky };
+    enum class Kind { lamp, cluster, sky, bright };
     struct Emitter {
         Kind kind;
         uint32_t index;
@@ -72,9 +91,12 @@ private:
     float cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const;
     EmitterSample sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const;
     EmitterSample sample_sky(const Vec2& u) const;
+    EmitterSample sample_bright(const Cluster& c, const Vec3& p, Vec2 u) const;
+    void add_bright_cluster(uint32_t first, uint32_t count);
+    void weigh_for_anywhere();
 
     const Snapshot& scene_;
-    SkySampler sky_;
+    std::shared_ptr<const SkySampler> sky_;
     std::vector<Emitter> emitters_;
     std::vector<Cluster> clusters_;
     std::vector<EmissiveTriangle> triangles_;
@@ -82,6 +104,16 @@ private:
     std::vector<float> triangle_density_; ///< pick probability / area
     uint32_t sky_emitter_ = kNone;
     uint32_t emissive_count_ = 0;
+    std::vector<float> anywhere_; ///< running weights over all emitters but bright texels
+
+    struct BrightEntry {
+        uint32_t emitter;
+        float density; ///< per m^2
+    };
+    std::vector<BrightTexel> bright_;
+    std::vector<float> bright_running_; ///< running sums of power inside clusters
+    std::vector<uint32_t> bright_index_; ///< per page texel: into bright_entries_, or kNone
+    std::vector<BrightEntry> bright_entries_;
 };
 
 } // namespace ajar

@@ -3,6 +3,7 @@
 
 #include "ajar/ajar.h"
 #include "base/math.h"
+#include "scene/element.h"
 
 #include <string>
 
@@ -23,6 +24,7 @@ struct Light {
     Type type = Type::point;
     bool primary = true; ///< only its bounced light is stored
     bool casts_shadow = true;
+    uint32_t light_set = kNoElement;
     Vec3 position{0.0f};
     DVec3 exact_position{0.0};
     Vec3 axis{0, 0, -1};     ///< where it shines; sun: where the light travels

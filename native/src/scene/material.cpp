@@ -104,4 +104,11 @@ SurfaceSample Material::sample(const Snapshot& scene, const MeshPoint& at) const
     return out;
 }
 
+Vec3 Material::emission(const Snapshot& scene, const MeshPoint& at) const {
+    SurfaceSample out;
+    for (const ajar_closure& c : closures)
+        if (c.type == AJAR_CLOSURE_EMISSION) add_closure(scene, c, at, out);
+    return is_finite(out.emission) ? out.emission : Vec3(0.0f);
+}
+
 } // namespace ajar

@@ -37,6 +37,8 @@ struct Material {
 
     /// Evaluates all closures at a point.
     SurfaceSample sample(const Snapshot& scene, const MeshPoint& at) const;
+    /// The emitted radiance alone.
+    Vec3 emission(const Snapshot& scene, const MeshPoint& at) const;
 };
 
 /// Total hemispherical reflectance of a specular lobe, GGX with Schlick Fresnel, including

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/error.h"
+#include "scene/element.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/sky.h"
@@ -35,6 +36,9 @@ struct Instance {
     uint32_t lightmap_layer = AJAR_NONE;
     uint32_t page = AJAR_NONE;
     Vec2 uv_scale{1.0f}, uv_offset{0.0f};
+    uint32_t element = kNoElement;   ///< door or toggle it is a part of
+    bool open_pose = false;          ///< door: there while it is open, not while it is closed
+    uint32_t light_set = kNoElement; ///< of its emission
 };
 
 /// One world-space triangle of the flattened scene.
@@ -62,6 +66,7 @@ struct Snapshot {
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
+    std::vector<Element> elements;
     std::vector<Light> lights;
     std::vector<Page> pages;
     Sky sky;
@@ -83,6 +88,9 @@ struct Snapshot {
     }
     SurfaceSample surface(uint32_t triangle, float u, float v) const {
         return materials[triangles[triangle].material].sample(*this, mesh_point(triangle, u, v));
+    }
+    Vec3 emission(uint32_t triangle, float u, float v) const {
+        return materials[triangles[triangle].material].emission(*this, mesh_point(triangle, u, v));
     }
     Vec3 position(uint32_t triangle, float u, float v) const;
     /// Unit geometric normal; (0,0,1) never occurs for a kept triangle by accident: they have area.

@@ -7,7 +7,7 @@ namespace ajar {
 
 namespace {
 
-constexpr uint32_t kMaxTextureSize = 32768, kMaxPageSize = 16384;
+constexpr uint32_t kMaxTextureSize = 32768, kMaxPageSize = 16384, kMaxElements = 65000;
 
 void require(bool condition, ajar_result code, const std::string& message, const std::string& culprit) {
     if (!condition) throw Error(code, message, culprit);
@@ -146,6 +146,27 @@ uint32_t SnapshotBuilder::add_mesh(const ajar_mesh_desc& d) {
     return static_cast<uint32_t>(snapshot_->meshes.size() - 1);
 }
 
+uint32_t SnapshotBuilder::add_element(const ajar_element_desc& d) {
+    Element e;
+    e.name = name_of(d.name, "element");
+    require(d.kind <= AJAR_ELEMENT_TOGGLE, AJAR_ERROR_ARGUMENT, "unknown kind of element", e.name);
+    require(snapshot_->elements.size() < kMaxElements, AJAR_ERROR_INPUT, "the scene has more than 65000 light sets, doors and toggles", e.name);
+    e.kind = static_cast<ElementKind>(d.kind);
+    require(d.weight >= 0.0f && std::isfinite(d.weight), AJAR_ERROR_INPUT, "its weight is negative or not finite", e.name);
+    require(!e.is_switch() || d.weight <= 1.0f, AJAR_ERROR_INPUT, "its openness or presence is above 1", e.name);
+    e.weight = d.weight;
+    e.combines = d.combine != 0;
+    e.bounces = d.bounce != 0;
+    snapshot_->elements.push_back(std::move(e));
+    return static_cast<uint32_t>(snapshot_->elements.size() - 1);
+}
+
+void SnapshotBuilder::check_element(uint32_t id, bool light_set, const std::string& culprit) const {
+    if (id == AJAR_NONE) return;
+    require(id < snapshot_->elements.size(), AJAR_ERROR_ARGUMENT, "names an element that was not added", culprit);
+    require(snapshot_->elements[id].is_switch() != light_set, AJAR_ERROR_ARGUMENT, light_set ? "its light set is a door or toggle" : "its door or toggle is a light set", culprit);
+}
+
 uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
     Instance i;
     i.name = name_of(d.name, "object");
@@ -162,6 +183,12 @@ uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
     i.uv_scale = {d.uv_scale[0], d.uv_scale[1]};
     i.uv_offset = {d.uv_offset[0], d.uv_offset[1]};
     require(is_finite(Vec3(i.uv_scale, i.uv_offset.x)) && std::isfinite(i.uv_offset.y), AJAR_ERROR_ARGUMENT, "lightmap rectangle is not finite", i.name);
+    check_element(d.element, false, i.name);
+    check_element(d.light_set, true, i.name);
+    i.element = d.element;
+    i.open_pose = d.open_pose != 0;
+    i.light_set = d.light_set;
+    require(!i.open_pose || (i.element != AJAR_NONE && snapshot_->elements[i.element].kind == ElementKind::door), AJAR_ERROR_ARGUMENT, "is the open pose of no door", i.name);
     snapshot_->instances.push_back(std::move(i));
     return static_cast<uint32_t>(snapshot_->instances.size() - 1);
 }
@@ -171,7 +198,9 @@ uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
     require(d.type <= AJAR_LIGHT_AREA_ELLIPSE && d.role <= AJAR_ROLE_STATIC, AJAR_ERROR_ARGUMENT, "unknown type or role of light", name);
     for (const float v : {d.color[0], d.color[1], d.color[2], d.energy, d.radius, d.spot_angle, d.spot_blend, d.sun_angle, d.size_x, d.size_y, d.spread})
         require(std::isfinite(v), AJAR_ERROR_INPUT, "has a value that is not finite; set its power, colour and size again", name);
+    check_element(d.light_set, true, name);
     snapshot_->lights.push_back(make_light(d, name, affine_of(d.transform, name)));
+    snapshot_->lights.back().light_set = d.light_set;
     return static_cast<uint32_t>(snapshot_->lights.size() - 1);
 }
 

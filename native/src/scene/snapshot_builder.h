@@ -16,6 +16,7 @@ public:
     uint32_t add_texture(const ajar_texture_desc& desc);
     uint32_t add_material(const ajar_material_desc& desc);
     uint32_t add_mesh(const ajar_mesh_desc& desc);
+    uint32_t add_element(const ajar_element_desc& desc);
     uint32_t add_instance(const ajar_instance_desc& desc);
     uint32_t add_light(const ajar_light_desc& desc);
     uint32_t add_page(uint32_t width, uint32_t height);
@@ -30,6 +31,7 @@ public:
 private:
     void warn(const std::string& culprit, const std::string& text);
     void check_materials() const;
+    void check_element(uint32_t id, bool light_set, const std::string& culprit) const;
     void check_instance(const Instance& instance) const;
     void choose_origin();
     void flatten(uint32_t instance_index);

@@ -93,23 +93,14 @@ uint64_t sample_direct(const Snapshot& scene, const Tracer& tracer, const Emitte
 }
 
 Vec3 direct_irradiance(const Tracer& tracer, const EmitterSet& emitters, const Vec3& p, const Vec3& n, uint32_t seed) {
-    float total = 0.0f;
-    for (uint32_t e = 0; e < emitters.count(); ++e)
-        total += emitters.importance(e, p, n);
-    if (!(total > 0.0f)) return Vec3(0.0f);
-    const float target = unit_float(hash32(seed)) * total;
-    float running = 0.0f;
-    for (uint32_t e = 0; e < emitters.count(); ++e) {
-        const float weight = emitters.importance(e, p, n);
-        running += weight;
-        if (running < target || weight == 0.0f) continue;
-        const EmitterSample s = emitters.sample(e, p, owen_sobol(0, seed));
-        const float cosine = glm::dot(s.direction, n);
-        if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return Vec3(0.0f);
-        const Vec3 seen = s.casts_shadow ? tracer.transmittance({p, s.direction, 0.0f, shadow_end(tracer, s)}) : Vec3(1.0f);
-        return s.weight * seen * (cosine * total / weight);
-    }
-    return Vec3(0.0f);
+    float chance;
+    const uint32_t e = emitters.pick_anywhere(p, n, hash32(seed), chance);
+    if (e == EmitterSet::kNone) return Vec3(0.0f);
+    const EmitterSample s = emitters.sample(e, p, owen_sobol(0, seed));
+    const float cosine = glm::dot(s.direction, n);
+    if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return Vec3(0.0f);
+    const Vec3 seen = s.casts_shadow ? tracer.transmittance({p, s.direction, 0.0f, shadow_end(tracer, s)}) : Vec3(1.0f);
+    return s.weight * seen * (cosine / chance);
 }
 
 } // namespace ajar

@@ -71,6 +71,7 @@ struct Gatherer {
     Vec3 texel_radiance(const Hit& hit) const {
         return o.radiance != nullptr ? Vec3(o.radiance[g.surfaces.texel(hit.triangle, hit.u, hit.v)]) : Vec3(0.0f);
     }
+    Vec3 first_hit_radiance(uint32_t triangle, float u, float v, float t, const Vec3& w, uint32_t local, float cosine) const;
 };
 
 float Gatherer::mis_weight(uint32_t emitter, float density, uint32_t local, float cosine) const {
@@ -138,6 +139,20 @@ Vec3 Gatherer::path_radiance(Ray ray, uint32_t seed, int depth) {
     return result;
 }
 
+/// What a lightmapped surface sends to a receiver. Bright texels share it with the emitter samples
+/// that aim at them; the fourth channel marks them.
+Vec3 Gatherer::first_hit_radiance(uint32_t triangle, float u, float v, float t, const Vec3& w, uint32_t local, float cosine) const {
+    if (o.radiance == nullptr) return Vec3(0.0f);
+    const uint32_t texel = g.surfaces.texel(triangle, u, v);
+    const Vec4 radiance = o.radiance[texel];
+    if (radiance.w == 0.0f || o.direct_samples == 0) return Vec3(radiance);
+    float density = 0.0f;
+    const uint32_t e = g.emitters.bright_emitter(texel, density);
+    if (e == EmitterSet::kNone) return Vec3(radiance);
+    const float facing = std::max(std::abs(glm::dot(w, g.scene.geometric_normal(triangle))), 1e-9f);
+    return Vec3(radiance) * mis_weight(e, density * t * t / facing, local, cosine);
+}
+
 /// The general case of a gather ray: emission, layers of transmissive surfaces, back faces.
 Vec3 Gatherer::shade_slow(Ray ray, Hit hit, uint32_t local, float cosine, uint32_t seed) {
     Vec3 through(1.0f), result(0.0f);
@@ -148,9 +163,15 @@ Vec3 Gatherer::shade_slow(Ray ray, Hit hit, uint32_t local, float cosine, uint32
             if (hit.t < kNearTexels * g.receivers.texel_size[tile.first + local]) sums.inside[local] += 1.0f;
             return result;
         }
+        const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
+        if (mapped && !(f & SurfaceTable::kTransmits)) {
+            if (o.emission && (f & SurfaceTable::kEmits)) result += through * emission(g.scene.emission(hit.triangle, hit.u, hit.v), ray, hit, local, cosine);
+            return result + through * first_hit_radiance(hit.triangle, hit.u, hit.v, hit.t, ray.direction, local, cosine);
+        }
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
         if (f & SurfaceTable::kEmits) result += through * emission(s.emission, ray, hit, local, cosine);
-        result += through * (hit.back || (f & SurfaceTable::kUnmapped) ? unmapped_radiance(ray, hit, s.reflectance, hash_combine(seed, layer), 0) : texel_radiance(hit));
+        result += through * (mapped ? first_hit_radiance(hit.triangle, hit.u, hit.v, hit.t, ray.direction, local, cosine)
+                                    : unmapped_radiance(ray, hit, s.reflectance, hash_combine(seed, layer), 0));
         through *= s.transmittance;
         if (!(max_component(through) > 1e-4f)) return result;
         ray.tnear = next_tnear(hit.t);
@@ -164,12 +185,12 @@ Vec3 Gatherer::shade(uint32_t lane, uint32_t local, const RayPacket& packet, uin
     const uint32_t triangle = packet.triangle[lane];
     const Vec3 w = packet.direction(lane);
     const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
-    constexpr uint8_t special = SurfaceTable::kEmits | SurfaceTable::kTransmits | SurfaceTable::kUnmapped;
+    const uint8_t special = SurfaceTable::kTransmits | SurfaceTable::kUnmapped | (o.emission ? SurfaceTable::kEmits : 0);
+    const float cosine = glm::dot(w, g.receivers.frame[tile.first + local].z);
     if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special))
-        return o.radiance != nullptr ? Vec3(o.radiance[g.surfaces.texel(triangle, packet.u[lane], packet.v[lane])]) : Vec3(0.0f);
+        return first_hit_radiance(triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], w, local, cosine);
     const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, w};
     const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
-    const float cosine = glm::dot(w, g.receivers.frame[tile.first + local].z);
     const Vec3 r = shade_slow(ray, hit, local, cosine, hash_combine(hash_combine(o.seed, g.receivers.texel[tile.first + local]), sample));
     return is_finite(r) ? r : Vec3(0.0f);
 }

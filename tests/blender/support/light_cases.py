@@ -103,7 +103,7 @@ def build_case(name):
     _plane("Floor", Matrix.Identity(4), FLOOR, grey)
     tilt = Matrix.Translation((0, 1.3, 0.3)) @ Euler((1.0, 0, 0)).to_matrix().to_4x4()
     _plane("Tilted", tilt, 0.5, grey)
-    mirror = Matrix.Translation((-1.3, 0, 0.3)) @ Euler((0, 0.8, 0)).to_matrix().to_4x4() @ Matrix.Diagonal((-1, 1, 1, 1))
-    _plane("Mirrored", mirror, 0.5, grey)
+    lean = Matrix.Translation((-1.3, 0, 0.3)) @ Euler((0, 0.8, 0)).to_matrix().to_4x4()
+    _plane("Mirrored", lean @ Matrix.Diagonal((-1, 1, 1, 1)), 0.5, grey)
     builder, arguments = CASES[name]
     _BUILDERS[builder](**arguments)

@@ -47,7 +47,7 @@ CASES = {
     'disk_tiny': _area('DISK', 0.01),
     'ellipse': _area('ELLIPSE', 0.8, 0.3),
     'square_spread_2.5': _area('SQUARE', 0.8, spread=2.5),
-    'square_spread_0.8': _area('SQUARE', 0.8, spread=0.8),
+    'square_spread_1.2': _area('SQUARE', 0.4, spread=1.2),
     'ellipse_spread_1.5': _area('ELLIPSE', 0.8, 0.3, spread=1.5),
     'emission': ('emitter', {}),
     'emission_flipped': ('emitter', {'flip': True}),

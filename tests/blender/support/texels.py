@@ -4,7 +4,8 @@ import numpy as np
 
 
 class TexelMap:
-    """Per texel: world position, geometric normal, object and material index (-1: none), hits."""
+    """Per texel: world position, geometric normal, object and material index (-1: none), number of
+    triangles, share of rays that meet back faces, whether an opposite face coincides."""
 
     def __init__(self, width, height):
         self.position = np.zeros((height, width, 3), np.float32)
@@ -12,6 +13,8 @@ class TexelMap:
         self.object = np.full((height, width), -1, np.int32)
         self.material = np.full((height, width), -1, np.int32)
         self.overlap = np.zeros((height, width), np.uint8)
+        self.back = np.zeros((height, width), np.float32)
+        self.coincident = np.zeros((height, width), bool)
 
 
 def rasterize_piece(piece, index, material_index, maps):
