@@ -404,7 +404,7 @@ TEST(HardRoom, FiveMillimetrePartitionInsideOneRoom) {
     const kit::Layer e = kit::Bake(scene, kit::settings(3, 512)).layer(AJAR_LAYER_IRRADIANCE);
     EXPECT_GT(kit::mean(e, 0, 0, 19, 20), 10.0);
     for (uint32_t y = 0; y < 20; ++y)
-        for (uint32_t x = 21; x < 40; ++x) ASSERT_EQ(e.at(x, y), 0.0f) << x << ' ' << y;
+        for (uint32_t x = 21; x < 40; ++x) EXPECT_EQ(e.at(x, y), 0.0f) << x << ' ' << y;
 }
 
 TEST(HardRoom, TexelHalfUnderABoxKeepsTheLightOfItsVisibleHalf) {

@@ -138,8 +138,11 @@ AJAR_API ajar_result ajar_job_error(ajar_job job, char* text, uint64_t text_size
 
 AJAR_API ajar_result ajar_job_release(ajar_job* job) {
     return guarded([&] {
-        jobs().take(required(job));
+        const auto j = jobs().take(required(job));
         *job = nullptr;
+        // Another thread may wait for it and keep it alive: end it here all the same.
+        j->cancel();
+        j->wait(-1.0);
         return AJAR_OK;
     });
 }
@@ -218,7 +221,7 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
         const auto j = jobs().get(job);
         if (directory == nullptr || *directory == 0) throw Error(AJAR_ERROR_ARGUMENT, "the package needs a directory");
         PackageContent content = package_content(j->scene(), j->output().pages);
-        if (extras != nullptr) content.extras = extras;
+        if (extras != nullptr) content.extras = *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
         write_package(content, directory);
         return AJAR_OK;
     });

@@ -49,7 +49,7 @@ void Job::bake() {
     const EmitterSet emitters(scene, pool, progress_);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
-    output_.bake = Baker({scene, tracer, surfaces, emitters, output_.receivers}, settings_, pool, progress_).run();
+    output_.bake = Baker({scene, tracer, surfaces, emitters, output_.receivers, progress_}, settings_, pool, progress_).run();
     progress_.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress_);
 }

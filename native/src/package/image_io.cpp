@@ -69,6 +69,8 @@ std::vector<uint8_t> encode_exr(uint32_t width, uint32_t height, const std::vect
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
     spec.attribute("Software", "Ajar");
+    // The library would write the time of day; equal bakes must give equal files.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
     return encode("exr", spec, TypeDesc::FLOAT, data.data(), size_t(width) * channels.size() * sizeof(float));
 }
 

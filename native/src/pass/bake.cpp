@@ -5,6 +5,7 @@
 #include "pass/bake.h"
 
 #include "base/hash.h"
+#include "transport/direct.h"
 
 #include <bit>
 #include <memory>
@@ -56,6 +57,11 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
     return out;
 }
 
+/// Receivers of one block share coarse light if no wall stands between and their normals agree.
+bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
+    return receivers.shares[a] != 0 && receivers.shares[b] != 0 && glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
+}
+
 uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
     return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
 }
@@ -72,12 +78,12 @@ struct Baker::TileEstimate {
         if (plan.direct != 0) e += sum_of(*direct, lane) / static_cast<float>(plan.direct);
         return e;
     }
-    float gather_variance(uint32_t lane) const {
-        const auto n = static_cast<float>(std::max(plan.gather, 1u));
+    double gather_variance(uint32_t lane) const {
+        const auto n = static_cast<double>(std::max(plan.gather, 1u));
         return gather->pairs[lane] / (n * n);
     }
-    float direct_variance(uint32_t lane) const {
-        const auto n = static_cast<float>(std::max(plan.direct, 1u));
+    double direct_variance(uint32_t lane) const {
+        const auto n = static_cast<double>(std::max(plan.direct, 1u));
         return direct->pairs[lane] / (n * n);
     }
 };
@@ -93,7 +99,7 @@ bool Baker::gathers() const { return settings_.bounces > 0 || s_.scene.sky.lit()
 
 void Baker::set_radiance(const std::vector<Vec3>& irradiance) {
     for (uint32_t r = 0; r < s_.receivers.count(); ++r)
-        radiance_[s_.receivers.texel[r]] = Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, 0.0f);
+        radiance_[s_.receivers.texel[r]] = Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, s_.receivers.cut[r] != 0 ? float{kTexelCut} : 0.0f);
 }
 
 void Baker::keep_bounce(const std::vector<Vec3>& irradiance) {
@@ -110,20 +116,18 @@ void Baker::direct_source() {
     pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
         const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
-        LightChoice choice(s_.emitters, LightRoles::all);
-        uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
+        DirectGroups groups(s_.emitters, LightRoles::all, {});
+        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples, hash_combine(seed, s_.receivers.texel[tile.first]));
         auto direct = make_sums(false), gather = make_sums(false);
         const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
-        const MisCounts mis{static_cast<float>(gather_rays), 1.0f, kSourceSamples};
-        rays += sample_direct(s_.scene, s_.tracer, s_.emitters, choice, s_.receivers, tile, kSourceSamples, mis, seed, *direct);
+        rays += sample_direct(s_, groups.groups()[0], tile, {static_cast<float>(gather_rays), 1.0f}, seed, *direct);
         if (rays_needed) {
             GatherOptions o;
             o.samples = gather_rays;
             o.emission = true;
-            o.direct_samples = kSourceSamples;
-            o.choice = &choice;
+            o.direct = &groups;
             o.seed = seed;
-            rays += gather_tile(s_, tile, o, *gather);
+            rays += gather_tile(s_, tile, o, nullptr, *gather);
         }
         share_quads(tile, *gather, current_);
         for (uint32_t lane = 0; lane < tile.count; ++lane) current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
@@ -135,19 +139,13 @@ void Baker::direct_source() {
 /// Mean irradiance of the receivers of each 2x2 block with like normals. Enough for light that will
 /// be gathered once more, with a quarter of the rays.
 void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const {
-    const auto quad = [&](uint32_t r) {
-        const Page& page = s_.scene.pages[s_.scene.instance_of(s_.receivers.triangle[r]).page];
-        const auto local = static_cast<uint32_t>(s_.receivers.texel[r] - page.first_texel);
-        return std::pair{(local % page.width) / 2, local / page.width / 2};
-    };
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const uint32_t r = tile.first + lane;
         Vec3 total(0.0f);
         float count = 0.0f;
-        for (uint32_t other = lane >= 3 ? lane - 3 : 0; other < std::min(lane + 4, tile.count); ++other) {
-            const uint32_t q = tile.first + other;
-            if (quad(q) != quad(r) || glm::dot(s_.receivers.frame[q].z, s_.receivers.frame[r].z) < kQuadNormal) continue;
-            total += gathered(sums, other);
+        for (auto [q, end] = block_of(s_.scene, s_.receivers, tile, r); q < end; ++q) {
+            if (q != r && !may_share(s_.receivers, q, r)) continue;
+            total += gathered(sums, q - tile.first);
             count += 1.0f;
         }
         out[r] = total / count;
@@ -161,10 +159,9 @@ void Baker::bounce(uint32_t index) {
         auto sums = make_sums(false);
         GatherOptions o;
         o.samples = std::max(settings_.bounce_samples / 4, 4u);
-        o.radiance = radiance_.data();
         o.unmapped_direct = index == 1;
         o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
-        progress_.add_rays(gather_tile(s_, tile, o, *sums));
+        progress_.add_rays(gather_tile(s_, tile, o, radiance_.data(), *sums));
         share_quads(tile, *sums, current_);
     });
     keep_bounce(current_);
@@ -173,22 +170,19 @@ void Baker::bounce(uint32_t index) {
 Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh) {
     TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
     const GatherScene scene = final_scene();
-    LightChoice choice(scene.emitters, LightRoles::stored);
-    uint64_t rays = choice.begin(s_.scene, s_.tracer, s_.receivers, tile, hash_combine(seed, s_.receivers.texel[tile.first]));
-    if (choice.empty()) t.plan.direct = 0;
-    const MisCounts mis{static_cast<float>(plan.gather), kFinalShare, static_cast<float>(t.plan.direct)};
-    if (t.plan.direct != 0) rays += sample_direct(s_.scene, s_.tracer, scene.emitters, choice, s_.receivers, tile, t.plan.direct, mis, seed, *t.direct);
+    DirectGroups groups(scene.emitters, LightRoles::stored, {});
+    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct, hash_combine(seed, s_.receivers.texel[tile.first]));
+    t.plan.direct = groups.groups()[0].samples;
+    rays += sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(plan.gather), kFinalShare}, seed, *t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
         o.samples = plan.gather;
         o.share = kFinalShare;
-        o.radiance = settings_.bounces > 0 ? radiance_.data() : nullptr;
         o.emission = true;
         o.unmapped_direct = settings_.bounces > 0;
-        o.direct_samples = t.plan.direct;
-        o.choice = &choice;
+        o.direct = &groups;
         o.seed = seed;
-        rays += gather_tile(scene, tile, o, *t.gather);
+        rays += gather_tile(scene, tile, o, settings_.bounces > 0 ? radiance_.data() : nullptr, *t.gather);
     }
     progress_.add_rays(rays);
     return t;
@@ -208,10 +202,10 @@ EmitterSet Baker::find_bright_texels() {
         const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
         for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
             Vec4& radiance = radiance_[s_.receivers.texel[r]];
-            if (!s_.receivers.full[r] || !(luminance(Vec3(radiance)) > threshold)) continue;
+            if (!s_.receivers.full[r] || s_.receivers.cut[r] || !(luminance(Vec3(radiance)) > threshold)) continue;
             BrightTexel t = bright_texel(s_.scene, s_.receivers, r);
             t.radiance = Vec3(radiance);
-            radiance.w = 1.0f;
+            radiance.w += float{kTexelBright};
             bright.push_back(t);
         }
     }
@@ -293,7 +287,7 @@ void Baker::final_gather(const std::vector<Plan>& plan) {
         for (uint32_t lane = 0; lane < tile.count; ++lane) {
             const size_t r = tile.first + lane;
             result_.irradiance[r] = t.irradiance(lane);
-            result_.standard_error[r] = std::sqrt(t.gather_variance(lane) + t.direct_variance(lane));
+            result_.standard_error[r] = static_cast<float>(std::sqrt(t.gather_variance(lane) + t.direct_variance(lane)));
             result_.samples[r] = static_cast<float>(t.plan.gather);
             result_.inside[r] = t.gather->inside[lane] * gn;
             for (int c = 0; c < kShCount; ++c) result_.sh[r * kShCount + c] = t.gather->sh[c][lane] * gn + t.direct->sh[c][lane] * dn;

@@ -50,7 +50,7 @@ private:
     void final_gather(const std::vector<Plan>& plan);
     void calibrate_error(const std::vector<Plan>& plan);
     bool gathers() const;
-    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers}; }
+    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_}; }
 
     GatherScene s_;
     ajar_settings settings_;
@@ -59,7 +59,7 @@ private:
     BakeResult result_;
     std::vector<Vec3> current_;  ///< irradiance of the bounce in hand
     std::unique_ptr<EmitterSet> final_emitters_;
-    std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees; w = 1: bright texel
+    std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees; w = TexelFlag bits
 };
 
 } // namespace ajar

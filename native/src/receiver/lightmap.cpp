@@ -65,6 +65,8 @@ struct Builder {
     float depth_inside(uint32_t triangle, const Vec2& p) const;
     Vec3 smooth_position(const TexelPoint& p) const;
     Vec3 shading_normal(const TexelPoint& p) const;
+    void keep_one_side(uint32_t receiver);
+    void find_sharing(const Tile& tile);
     Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
     void set_albedo(uint32_t receiver);
@@ -131,10 +133,8 @@ TexelPoint Builder::on_triangle(uint32_t triangle, const Vec2& p) const {
 /// any linear change of light exactly; at chart borders scattered points do.
 TexelPoint Builder::sub_texel(uint32_t receiver, uint32_t k, uint32_t base) const {
     const auto [begin, end] = runs[receiver];
-    float covered = 0.0f;
-    for (uint32_t i = begin; i < end; ++i) covered += coverage.fragments[i].ring ? 0.0f : coverage.fragments[i].area;
     const uint32_t columns = grid_columns(out.positions_per_texel), rows = out.positions_per_texel / columns;
-    if (std::abs(covered - 1.0f) > 1e-3f) return point(receiver, owen_sobol(k, base));
+    if (out.whole[receiver] == 0) return point(receiver, owen_sobol(k, base));
     const Vec2 cell((static_cast<float>(k % columns) + 0.5f) / static_cast<float>(columns), (static_cast<float>(k / columns) + 0.5f) / static_cast<float>(rows));
     const Vec2 p = texel_corner(coverage.fragments[begin]) + cell;
     uint32_t best = begin;
@@ -193,6 +193,43 @@ Vec3 Builder::push_out(Vec3 p, const Frame& frame, float size) {
     return p;
 }
 
+/// Light on the two sides of a wall must not mix in one texel: the positions that see most others
+/// stay, the rest move to them.
+void Builder::keep_one_side(uint32_t r) {
+    Vec3* p = &out.positions[size_t{r} * out.positions_per_texel];
+    const uint32_t n = out.positions_per_texel;
+    const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
+    const auto sees = [&](uint32_t a, uint32_t b) {
+        return tracer.intersect({p[a] + up, p[b] - p[a], 0.0f, 1.0f}, kMaskShadowOpaque).triangle == kMiss;
+    };
+    uint32_t seen = 1;
+    for (uint32_t b = 1; b < n; ++b) seen += sees(0, b);
+    if (seen == n) return;
+    out.cut[r] = 1;
+    std::vector<uint32_t> best, side;
+    for (uint32_t a = 0; a < n; ++a) {
+        side.clear();
+        for (uint32_t b = 0; b < n; ++b)
+            if (a == b || sees(a, b)) side.push_back(b);
+        if (side.size() > best.size()) best = side;
+    }
+    const std::vector<Vec3> before(p, p + n);
+    for (uint32_t k = 0; k < n; ++k) p[k] = before[best[k % best.size()]];
+}
+
+/// A wall between two texels of a block ends all sharing in it.
+void Builder::find_sharing(const Tile& tile) {
+    for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
+        const auto [begin, end] = block_of(scene, out, tile, r);
+        const Vec3 p = out.origins(r)[0] + out.frame[r].z * (kSideHeight * out.texel_size[r]);
+        out.shares[r] = 1;
+        for (uint32_t q = begin; q < end; ++q) {
+            const Vec3 to = out.origins(q)[0] + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
+            if (q != r && tracer.intersect({p, to, 0.0f, 1.0f}, kMaskShadowOpaque).triangle != kMiss) out.shares[r] = 0;
+        }
+    }
+}
+
 void Builder::set_frame(uint32_t r) {
     const auto [begin, end] = runs[r];
     uint32_t best = begin;
@@ -212,6 +249,9 @@ void Builder::set_frame(uint32_t r) {
     out.frame[r] = frame_from_tangent(n, du, glm::dot(glm::cross(n, du), dv) < 0.0f ? -1.0f : 1.0f);
     out.texel_size[r] = std::sqrt(2.0f * scene.area(triangle) / std::abs(det));
     out.ring[r] = coverage.fragments[begin].ring;
+    float covered = 0.0f;
+    for (uint32_t i = begin; i < end; ++i) covered += coverage.fragments[i].ring ? 0.0f : coverage.fragments[i].area;
+    out.whole[r] = std::abs(covered - 1.0f) <= 1e-3f;
     out.full[r] = end - begin == 1 && !coverage.fragments[begin].ring && coverage.fragments[begin].area > 0.9999f;
 }
 
@@ -235,6 +275,7 @@ void Builder::build(uint32_t r) {
         const Vec3 origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
         out.positions[size_t{r} * k_count + k] = push_out(origin, out.frame[r], out.texel_size[r]);
     }
+    keep_one_side(r);
 }
 
 void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector<Warning>& warnings) {
@@ -255,7 +296,33 @@ void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector
     }
 }
 
+/// Objects most of whose texels reflect more than can be allowed.
+void warn_about_albedo(const Snapshot& scene, const LightmapReceivers& receivers, std::vector<Warning>& warnings) {
+    std::vector<uint32_t> all(scene.instances.size(), 0), clamped(scene.instances.size(), 0);
+    for (uint32_t r = 0; r < receivers.count(); ++r) {
+        const uint32_t i = scene.triangles[receivers.triangle[r]].instance;
+        ++all[i];
+        clamped[i] += max_component(receivers.albedo[r]) >= kMaxReflectance - 1e-4f;
+    }
+    for (size_t i = 0; i < all.size(); ++i)
+        if (2 * clamped[i] > all[i]) warnings.push_back({scene.instances[i].name, "reflects nearly all light; its reflectance is limited to 0.95, darken its material for a faithful bake"});
+}
+
 } // namespace
+
+// Morton order keeps a block's receivers together.
+std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile, uint32_t r) {
+    const auto block = [&](uint32_t q) {
+        const Page& page = scene.pages[scene.instance_of(receivers.triangle[q]).page];
+        const auto local = static_cast<uint32_t>(receivers.texel[q] - page.first_texel);
+        return std::pair{(local % page.width) / 2, local / page.width / 2};
+    };
+    const auto own = block(r);
+    uint32_t begin = r, end = r + 1;
+    while (begin > tile.first && block(begin - 1) == own) --begin;
+    while (end < tile.first + tile.count && block(end) == own) ++end;
+    return {begin, end};
+}
 
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, uint32_t positions_per_texel,
                                  uint32_t seed, ThreadPool& pool, Progress& progress, std::vector<Warning>& warnings) {
@@ -269,13 +336,20 @@ LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, co
     b.out.texel_size.resize(count);
     b.out.ring.resize(count);
     b.out.full.resize(count);
+    b.out.cut.resize(count);
+    b.out.whole.resize(count);
+    b.out.of_texel.assign(scene.texel_count(), kNoReceiver);
+    for (uint32_t r = 0; r < count; ++r) b.out.of_texel[b.out.texel[r]] = r;
     b.out.positions.resize(count * positions_per_texel);
     pool.for_each(b.out.tiles.size(), progress, [&](size_t i) {
         for (uint32_t r = b.out.tiles[i].first; r < b.out.tiles[i].first + b.out.tiles[i].count; ++r) b.build(r);
     });
+    b.out.shares.resize(count);
+    pool.for_each(b.out.tiles.size(), progress, [&](size_t i) { b.find_sharing(b.out.tiles[i]); });
     b.out.pushed_positions = b.pushed;
     b.out.clamped_albedo = b.clamped;
     warn_about_uvs(scene, coverage, warnings);
+    warn_about_albedo(scene, b.out, warnings);
     return std::move(b.out);
 }
 

@@ -13,6 +13,9 @@ namespace ajar {
 struct Tile {
     uint32_t first = 0, count = 0; ///< count <= kTileReceivers
 };
+inline constexpr uint32_t kNoReceiver = 0xffffffffu;
+/// Texel edges above the surface at which positions of a texel must see each other.
+inline constexpr float kSideHeight = 0.25f;
 inline constexpr uint32_t kTileEdge = 16, kTileReceivers = kTileEdge * kTileEdge;
 
 /// Every lightmap texel that wants light, structure of arrays. World space.
@@ -26,6 +29,10 @@ struct LightmapReceivers {
     std::vector<Vec3> albedo;       ///< mean reflectance over the texel
     std::vector<float> texel_size;  ///< m
     std::vector<uint8_t> full;      ///< one triangle covers the whole texel
+    std::vector<uint8_t> whole;     ///< the chart covers the whole texel
+    std::vector<uint8_t> cut;       ///< a wall runs through the texel; its positions lie on one side of it
+    std::vector<uint8_t> shares;    ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
+    std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
     std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
     uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
     uint64_t pushed_positions = 0;
@@ -33,6 +40,9 @@ struct LightmapReceivers {
     uint32_t count() const { return static_cast<uint32_t>(texel.size()); }
     const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
 };
+
+/// First and last + 1 receiver of the 2x2 block that r belongs to, inside its tile.
+std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile, uint32_t r);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
 /// (algorithms.md 9.1, 9.2, 9.4). Adds warnings about UVs to warnings.

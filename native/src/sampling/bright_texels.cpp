@@ -36,19 +36,19 @@ EmitterSet EmitterSet::with_bright_texels(std::vector<BrightTexel> texels) const
 }
 
 void EmitterSet::add_bright_cluster(uint32_t first, uint32_t count) {
-    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true};
-    Vec3 low(1e30f), high(-1e30f);
+    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true, kNoElement, {}};
     for (uint32_t i = first; i < first + count; ++i) {
         const BrightTexel& t = bright_[i];
         c.power += luminance(t.radiance) * area_of(t);
         bright_running_[i] = c.power;
         c.axis += t.normal;
-        const Vec3 half = 0.5f * (glm::abs(t.edge_x) + glm::abs(t.edge_y));
-        low = glm::min(low, t.center - half);
-        high = glm::max(high, t.center + half);
+        c.center += t.center / static_cast<float>(count);
     }
-    c.center = 0.5f * (low + high);
-    c.radius = 0.5f * glm::length(high - low);
+    for (uint32_t i = first; i < first + count; ++i) {
+        const BrightTexel& t = bright_[i];
+        const float half = 0.5f * std::max(glm::length(t.edge_x + t.edge_y), glm::length(t.edge_x - t.edge_y));
+        c.radius = std::max(c.radius, glm::distance(t.center, c.center) + half);
+    }
     c.axis = normalize_or(c.axis, bright_[first].normal);
     for (uint32_t i = first; i < first + count; ++i) {
         bright_index_[bright_[i].texel] = static_cast<uint32_t>(bright_entries_.size());
@@ -79,7 +79,7 @@ EmitterSample EmitterSet::sample_bright(const Cluster& c, const Vec3& p, Vec2 u)
     const float cosine = -glm::dot(to, t.normal) / length;
     if (!(cosine > 0.0f)) return {};
     const float density = luminance(t.radiance) / c.power * length2 / cosine;
-    return {to / length, length, q, t.radiance / density, density, true};
+    return {to / length, length, q, t.radiance / density, density, true, false, t.texel, 1.0f / density};
 }
 
 void EmitterSet::weigh_for_anywhere() {

@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace ajar {
 
@@ -35,7 +36,7 @@ EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progre
     drop_large();
     triangle_density_.resize(triangles_.empty() ? 0 : scene.triangles.size(), 0.0f);
     triangle_emitter_.resize(triangles_.empty() ? 0 : scene.triangles.size(), kNone);
-    if (!triangles_.empty()) split(0, static_cast<uint32_t>(triangles_.size()));
+    split_by_element();
     if (sky_->total() > 0.0f) {
         sky_emitter_ = count();
         emitters_.push_back({Kind::sky, 0});
@@ -67,6 +68,37 @@ void EmitterSet::drop_large() {
     std::erase_if(triangles_, [&](const EmissiveTriangle& t) { return by_material[scene_.triangles[t.triangle].material] > kLargeShare * total; });
 }
 
+/// Clusters never mix light sets, nor surfaces that are there at different times.
+void EmitterSet::split_by_element() {
+    const auto key = [&](const EmissiveTriangle& t) {
+        const Instance& i = scene_.instance_of(t.triangle);
+        return std::tuple(i.light_set, i.element, i.open_pose);
+    };
+    std::stable_sort(triangles_.begin(), triangles_.end(), [&](const EmissiveTriangle& a, const EmissiveTriangle& b) { return key(a) < key(b); });
+    const auto total = static_cast<uint32_t>(triangles_.size());
+    for (uint32_t first = 0, end; first < total; first = end) {
+        for (end = first + 1; end < total && key(triangles_[end]) == key(triangles_[first]);) ++end;
+        split(first, end - first);
+    }
+}
+
+uint32_t EmitterSet::set_of(uint32_t e) const {
+    const Emitter& emitter = emitters_[e];
+    if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].light_set;
+    return emitter.kind == Kind::cluster ? clusters_[emitter.index].set : kNoElement;
+}
+
+std::vector<uint32_t> EmitterSet::of_set(uint32_t set) const {
+    std::vector<uint32_t> out;
+    for (uint32_t e = 0; e < count(); ++e)
+        if (set_of(e) == set) out.push_back(e);
+    return out;
+}
+
+Presence EmitterSet::presence(uint32_t e) const {
+    return emitters_[e].kind == Kind::cluster ? clusters_[emitters_[e].index].presence : Presence{};
+}
+
 void EmitterSet::split(uint32_t first, uint32_t count) {
     if (count <= kClusterSize) return add_cluster(first, count);
     const auto centroid = [&](const EmissiveTriangle& t) { return scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f); };
@@ -88,19 +120,20 @@ void EmitterSet::split(uint32_t first, uint32_t count) {
 }
 
 void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
-    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true};
-    Vec3 low(1e30f), high(-1e30f);
+    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true, kNoElement, {}};
     for (uint32_t i = first; i < first + count; ++i) {
         EmissiveTriangle& t = triangles_[i];
         c.power += t.power;
         t.running = c.power;
         c.axis += scene_.geometric_normal(t.triangle) * t.power;
         c.two_sided |= two_sided(scene_, t.triangle);
-        for (const uint32_t v : scene_.triangles[t.triangle].vertex) low = glm::min(low, scene_.positions[v]), high = glm::max(high, scene_.positions[v]);
+        c.center += scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f) / static_cast<float>(count);
     }
-    c.center = 0.5f * (low + high);
-    c.radius = 0.5f * glm::length(high - low);
+    for (uint32_t i = first; i < first + count; ++i)
+        for (const uint32_t v : scene_.triangles[triangles_[i].triangle].vertex) c.radius = std::max(c.radius, glm::distance(scene_.positions[v], c.center));
     c.axis = normalize_or(c.axis, {0, 0, 1});
+    c.set = scene_.instance_of(triangles_[first].triangle).light_set;
+    c.presence = scene_.presence(triangles_[first].triangle);
     for (uint32_t i = first; i < first + count; ++i) {
         const EmissiveTriangle& t = triangles_[i];
         c.flat &= glm::dot(scene_.geometric_normal(t.triangle), c.axis) > 0.999f;
@@ -138,7 +171,7 @@ EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const
     if (emitter.kind == Kind::sky) return sample_sky(u);
     const Light& light = scene_.lights[emitter.index];
     const LightSample s = light.sample(p, u);
-    return {s.direction, s.distance, p + s.direction * s.distance, s.weight, 0.0f, light.casts_shadow};
+    return {s.direction, s.distance, p + s.direction * s.distance, s.weight, 0.0f, light.casts_shadow, light.type == Light::Type::point || light.type == Light::Type::spot};
 }
 
 EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {

@@ -18,6 +18,9 @@ struct EmitterSample {
     Vec3 weight{0.0f};       ///< W/m^2 facing the light, divided by the pdf inside this emitter
     float pdf = 0.0f;        ///< per steradian inside this emitter; 0 for lamps, which rays never hit
     bool casts_shadow = true;
+    bool point_like = false;       ///< a point or spot lamp: as strong in every direction nearby
+    uint32_t texel = 0xffffffffu;  ///< bright texel: page texel whose light it is
+    float inverse_density = 0.0f;  ///< bright texel: weight = radiance * inverse_density
 };
 
 /// A lightmap texel that is so bright that it is worth aiming at: a parallelogram that reflects
@@ -41,6 +44,12 @@ public:
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
     /// A lamp whose direct light is not stored.
     bool is_primary(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].primary; }
+    /// Light set of an emitter, or kNoElement.
+    uint32_t set_of(uint32_t e) const;
+    /// Emitters of a set, or those of none for kNoElement.
+    std::vector<uint32_t> of_set(uint32_t set) const;
+    /// When the emitter's surface is there; lamps and sky always are.
+    Presence presence(uint32_t e) const;
     /// Rough unshadowed irradiance at p with normal n; 0 only if it cannot light the surface.
     float importance(uint32_t e, const Vec3& p, const Vec3& n) const;
     EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
@@ -76,6 +85,8 @@ private:
         float power;  ///< sum of luminance * area
         bool two_sided;
         bool flat;    ///< all normals agree with axis
+        uint32_t set = kNoElement;
+        Presence presence = {};
     };
     struct EmissiveTriangle {
         uint32_t triangle;
@@ -86,6 +97,7 @@ private:
 
     void collect(ThreadPool& pool, Progress& progress);
     void drop_large();
+    void split_by_element();
     void split(uint32_t first, uint32_t count);
     void add_cluster(uint32_t first, uint32_t count);
     float cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const;

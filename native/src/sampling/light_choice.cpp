@@ -11,6 +11,7 @@ constexpr uint32_t kFineCandidates = 32;
 constexpr uint32_t kProbes = 8;           ///< receivers of the tile that estimate importance
 constexpr uint32_t kVisibilityRays = 16;  ///< per candidate and tile
 constexpr float kVisibilityFloor = 0.05f;
+constexpr float kUnseenShare = 0.25f;     ///< of what the seen weigh that lamps seen by no ray may weigh together
 constexpr float kTileShare = 0.01f;       ///< of the tile's weight that each receiver keeps
 
 } // namespace
@@ -19,7 +20,7 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     candidates_.clear();
     slot_of_.assign(emitters_.count(), EmitterSet::kNone);
     const uint32_t probes = std::min(kProbes, tile.count);
-    for (uint32_t e = 0; e < emitters_.count(); ++e) {
+    for (const uint32_t e : choices_) {
         if (roles_ == LightRoles::stored && emitters_.is_primary(e)) continue;
         float weight = 0.0f;
         for (uint32_t i = 0; i < probes; ++i) {
@@ -37,10 +38,11 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
 }
 
-uint64_t LightChoice::learn_visibility(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
     visibility_.assign(fine_, 1.0f);
-    if (fine_ < 2) return 0;
     uint64_t rays = 0;
+    float seen_weight = 0.0f, unseen_weight = 0.0f;
+    std::vector<uint32_t> unseen;
     for (uint32_t c = 0; c < fine_; ++c) {
         uint32_t seen = 0, tried = 0;
         for (uint32_t i = 0; i < kVisibilityRays; ++i) {
@@ -54,15 +56,20 @@ uint64_t LightChoice::learn_visibility(const Snapshot& scene, const Tracer& trac
             if (!s.casts_shadow || tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle == kMiss) ++seen;
         }
         visibility_[c] = std::max(kVisibilityFloor, (static_cast<float>(seen) + 0.25f) / (static_cast<float>(tried) + 0.5f));
+        if (seen != 0) seen_weight += candidates_[c].weight * visibility_[c];
+        else unseen.push_back(c), unseen_weight += candidates_[c].weight * visibility_[c];
     }
-    (void)scene;
+    // Behind a wall even the strongest lamp should not take the samples from a candle in the room.
+    const float scale = seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(unseen_weight, 1e-30f)) : 1.0f;
+    for (const uint32_t c : unseen) visibility_[c] *= scale;
+    seen_ = seen_weight > 0.0f || fine_ < candidates_.size();
     return rays;
 }
 
-uint64_t LightChoice::begin(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
     find_candidates(receivers, tile);
     if (candidates_.empty()) return 0;
-    const uint64_t rays = learn_visibility(scene, tracer, receivers, tile, seed);
+    const uint64_t rays = learn_visibility(tracer, receivers, tile, seed);
     rest_running_.clear();
     float rest = 0.0f;
     for (size_t i = fine_; i < candidates_.size(); ++i) rest_running_.push_back(rest += candidates_[i].weight);

@@ -16,12 +16,16 @@ enum class LightRoles { all, stored };
 /// found. Every emitter that could matter keeps a chance, so the estimate stays unbiased.
 class LightChoice {
 public:
-    LightChoice(const EmitterSet& emitters, LightRoles roles) : emitters_(emitters), roles_(roles) {}
+    /// choices: ids of the emitters to choose from.
+    LightChoice(const EmitterSet& emitters, LightRoles roles, std::vector<uint32_t> choices)
+        : emitters_(emitters), roles_(roles), choices_(std::move(choices)) {}
 
     /// Prepares for a tile; traces the visibility rays. Returns how many.
-    uint64_t begin(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
+    uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
     /// Nothing lights this tile.
     bool empty() const { return candidates_.empty(); }
+    /// Some visibility ray met a light, or there was too little to choose from to ask.
+    bool seen() const { return seen_; }
     /// Emitter for u in [0,1) and the chance it had; u is rescaled to be used again.
     uint32_t pick(uint32_t local, float& u, float& chance) const;
     /// Chance of an emitter at a receiver of the tile, for MIS.
@@ -33,10 +37,12 @@ private:
         float weight; ///< of the whole tile
     };
     void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
-    uint64_t learn_visibility(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
+    uint64_t learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
 
     const EmitterSet& emitters_;
     LightRoles roles_;
+    std::vector<uint32_t> choices_;
+    bool seen_ = true;
     std::vector<Candidate> candidates_;   ///< strongest first; the first fine_ are weighed per receiver
     uint32_t fine_ = 0;
     std::vector<float> visibility_;       ///< [fine_]

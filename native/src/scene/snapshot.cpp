@@ -5,8 +5,13 @@ namespace ajar {
 
 uint32_t Snapshot::ray_mask(const Triangle& t) const {
     const uint32_t visibility = instances[t.instance].visibility;
-    const uint32_t shadow = materials[t.material].transmits ? kMaskShadowTransmissive : kMaskShadowOpaque;
+    const uint32_t fixed = materials[t.material].transmits ? kMaskShadowTransmissive : kMaskShadowOpaque;
+    const uint32_t shadow = instances[t.instance].element != kNoElement ? kMaskShadowSwitch : fixed;
     return (visibility & AJAR_VISIBLE_GATHER ? kMaskGather : 0u) | (visibility & AJAR_VISIBLE_SHADOW ? shadow : 0u);
+}
+
+bool Snapshot::has_switches() const {
+    return std::any_of(instances.begin(), instances.end(), [](const Instance& i) { return i.element != kNoElement; });
 }
 
 Vec3 Snapshot::position(uint32_t triangle, float u, float v) const {

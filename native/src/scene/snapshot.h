@@ -51,7 +51,13 @@ struct Triangle {
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
-enum RayMask : uint32_t { kMaskGather = 1, kMaskShadowOpaque = 2, kMaskShadowTransmissive = 4 };
+enum RayMask : uint32_t { kMaskGather = 1, kMaskShadowOpaque = 2, kMaskShadowTransmissive = 4, kMaskShadowSwitch = 8 };
+
+/// When a switchable surface is there: while element is at state 1 or at state 0.
+struct Presence {
+    uint32_t element = kNoElement;
+    bool state = true;
+};
 
 struct Page {
     uint32_t width = 0, height = 0;
@@ -83,11 +89,19 @@ struct Snapshot {
     /// RayMask bits of a triangle. Triangles are stored grouped by it.
     uint32_t ray_mask(const Triangle& t) const;
     const Instance& instance_of(uint32_t triangle) const { return instances[triangles[triangle].instance]; }
+    /// Presence of a triangle; element is kNoElement for fixed surfaces.
+    Presence presence(uint32_t triangle) const {
+        const Instance& i = instance_of(triangle);
+        return {i.element, i.element == kNoElement || i.open_pose || elements[i.element].kind == ElementKind::toggle};
+    }
+    bool has_switches() const;
     MeshPoint mesh_point(uint32_t triangle, float u, float v) const {
         return {instance_of(triangle).mesh, triangles[triangle].source, u, v};
     }
     SurfaceSample surface(uint32_t triangle, float u, float v) const {
-        return materials[triangles[triangle].material].sample(*this, mesh_point(triangle, u, v));
+        SurfaceSample s = materials[triangles[triangle].material].sample(*this, mesh_point(triangle, u, v));
+        if (const Presence p = presence(triangle); !p.state && !elements[p.element].bounces) s.reflectance = Vec3(0.0f);
+        return s;
     }
     Vec3 emission(uint32_t triangle, float u, float v) const {
         return materials[triangles[triangle].material].emission(*this, mesh_point(triangle, u, v));

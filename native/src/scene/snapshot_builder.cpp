@@ -56,6 +56,32 @@ bool closure_transmits(const ajar_closure& c) {
     return c.type == AJAR_CLOSURE_TRANSPARENT && has_weight(c) && may_be_positive(c.color);
 }
 
+/// World bounds of an instance.
+struct Extent {
+    const Instance* instance;
+    DVec3 low{1e300}, high{-1e300};
+    void add(const DVec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+};
+
+/// The instance that reaches furthest from where most instances are.
+const Instance* farthest(const std::vector<Extent>& extents) {
+    DVec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::vector<double> centers{0.0}; // of two objects the one that is far from zero is the stray
+        for (const Extent& e : extents) centers.push_back(0.5 * e.low[axis] + 0.5 * e.high[axis]);
+        std::nth_element(centers.begin(), centers.begin() + static_cast<ptrdiff_t>(centers.size() / 2), centers.end());
+        middle[axis] = centers[centers.size() / 2];
+    }
+    const auto reach = [&](const Extent& e) {
+        const DVec3 d = glm::max(middle - e.low, e.high - middle);
+        return std::max({d.x, d.y, d.z});
+    };
+    return std::max_element(extents.begin(), extents.end(), [&](const Extent& a, const Extent& b) { return reach(a) < reach(b); })->instance;
+}
+
 size_t clean_input(ajar_input& in) {
     size_t bad = 0;
     for (float& v : in.value)
@@ -233,6 +259,17 @@ void SnapshotBuilder::check_materials() const {
                 check_input(*in, m.name, snapshot_->textures.size());
 }
 
+void SnapshotBuilder::give_fallback_material() {
+    const auto fallback = static_cast<uint32_t>(snapshot_->materials.size());
+    for (Instance& i : snapshot_->instances) {
+        if (snapshot_->meshes[i.mesh].triangle_count() == 0) warn(i.name, "has no faces and is left out");
+        if (!i.materials.empty()) continue;
+        warn(i.name, "has no material and counts as black; give it a material");
+        i.materials.push_back(fallback);
+        if (snapshot_->materials.size() == fallback) snapshot_->materials.push_back({"(none)", {}, false, false, false});
+    }
+}
+
 void SnapshotBuilder::check_instance(const Instance& i) const {
     for (const uint32_t m : i.materials) require(m < snapshot_->materials.size(), AJAR_ERROR_ARGUMENT, "names a material that was not added", i.name);
     if (!i.lightmapped) return;
@@ -243,22 +280,19 @@ void SnapshotBuilder::check_instance(const Instance& i) const {
 // Floats near 0 are finest, so the scene is moved there in double precision first (algorithms.md 9.8).
 void SnapshotBuilder::choose_origin() {
     DVec3 low(1e300), high(-1e300);
-    const Instance* far = nullptr;
-    double farthest = -1.0;
+    std::vector<Extent> extents;
     for (const Instance& i : snapshot_->instances) {
-        const Mesh& mesh = snapshot_->meshes[i.mesh];
-        for (const Vec3& p : mesh.positions) {
-            if (!is_finite(p)) continue;
-            const DVec3 w = i.transform.point(DVec3(p));
-            low = glm::min(low, w);
-            high = glm::max(high, w);
-            const double reach = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
-            if (reach > farthest) farthest = reach, far = &i;
-        }
+        Extent e{&i};
+        for (const Vec3& p : snapshot_->meshes[i.mesh].positions)
+            if (is_finite(p)) e.add(i.transform.point(DVec3(p)));
+        if (!(e.low.x <= e.high.x)) continue;
+        low = glm::min(low, e.low);
+        high = glm::max(high, e.high);
+        extents.push_back(e);
     }
-    if (far == nullptr) return;
+    if (extents.empty()) return;
     const double half = 0.5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    require(half * 0x1p-23 < 1e-3, AJAR_ERROR_INPUT, "the scene is so wide that millimetres are lost; move this object closer or bake the scene in parts", far->name);
+    require(half * 0x1p-23 < 1e-3, AJAR_ERROR_INPUT, "the scene is so wide that millimetres are lost; move this object closer or bake the scene in parts", farthest(extents)->name);
     snapshot_->origin = 0.5 * (low + high);
     snapshot_->bounds_min = Vec3(low - snapshot_->origin);
     snapshot_->bounds_max = Vec3(high - snapshot_->origin);
@@ -300,19 +334,9 @@ void SnapshotBuilder::group_triangles() {
 void SnapshotBuilder::commit() {
     require(!committed_, AJAR_ERROR_STATE, "the scene is committed already", snapshot_->name);
     check_materials();
-    uint32_t fallback = AJAR_NONE;
-    for (Instance& i : snapshot_->instances) {
-        if (i.materials.empty()) {
-            if (fallback == AJAR_NONE) {
-                snapshot_->materials.push_back({"(none)", {}, false, false, false});
-                fallback = static_cast<uint32_t>(snapshot_->materials.size() - 1);
-                warn(i.name, "has no material and counts as black; give it a material");
-            }
-            i.materials.push_back(fallback);
-        }
-        check_instance(i);
-    }
+    for (const Instance& i : snapshot_->instances) check_instance(i);
     choose_origin();
+    give_fallback_material();
     for (uint32_t i = 0; i < snapshot_->instances.size(); ++i) flatten(i);
     group_triangles();
     for (Light& l : snapshot_->lights) l.move(-snapshot_->origin);

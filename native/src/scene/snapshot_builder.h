@@ -33,6 +33,7 @@ private:
     void check_materials() const;
     void check_element(uint32_t id, bool light_set, const std::string& culprit) const;
     void check_instance(const Instance& instance) const;
+    void give_fallback_material();
     void choose_origin();
     void flatten(uint32_t instance_index);
     void group_triangles();

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "sampling/light_choice.h"
-#include "transport/tile_sums.h"
+#include "transport/gather.h"
 
 namespace ajar {
 
@@ -11,15 +10,13 @@ namespace ajar {
 struct MisCounts {
     float gather = 0.0f; ///< rays per receiver with density hemisphere_pdf
     float share = 1.0f;  ///< cosine share of that density
-    float direct = 0.0f; ///< emitter samples per receiver
 };
 
-/// Next-event estimation of a tile: samples emitters through choice and adds to sums, which
-/// afterwards hold the total over samples (divide by samples). Returns the rays traced.
-uint64_t sample_direct(const Snapshot& scene, const Tracer& tracer, const EmitterSet& emitters, const LightChoice& choice,
-                       const LightmapReceivers& receivers, const Tile& tile, uint32_t samples, const MisCounts& mis, uint32_t seed, TileSums& sums);
+/// Next-event estimation of a tile with one group of emitters: group.samples emitter samples per
+/// receiver are added to sums, which hold totals over samples. Returns the rays traced.
+uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, TileSums& sums);
 
-/// Direct irradiance at any point by one emitter sample, for surfaces without receivers.
-Vec3 direct_irradiance(const Tracer& tracer, const EmitterSet& emitters, const Vec3& p, const Vec3& n, uint32_t seed);
+/// The same for scenes with elements; rows: light of bright texels, null if there are none.
+uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

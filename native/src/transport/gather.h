@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "transport/direct.h"
+#include "sampling/direct_groups.h"
 #include "transport/surface_table.h"
+#include "transport/term_sums.h"
+#include "transport/tile_sums.h"
 
 namespace ajar {
 
@@ -13,24 +15,37 @@ struct GatherScene {
     const SurfaceTable& surfaces;
     const EmitterSet& emitters;
     const LightmapReceivers& receivers;
+    const Progress& progress;
 };
 
 /// What one gather collects.
 struct GatherOptions {
     uint32_t samples = 64;       ///< rays per receiver, a power of two
     float share = 1.0f;          ///< cosine share of the ray density; 1 for irradiance alone
-    const Vec4* radiance = nullptr; ///< [page texels] outgoing radiance of the surfaces; null: none
     bool emission = false;       ///< count what emissive surfaces and the sky send directly
     bool unmapped_direct = false; ///< surfaces without lightmap reflect their direct light too
-    uint32_t direct_samples = 0; ///< emitter samples that share the emission by MIS
-    const LightChoice* choice = nullptr; ///< needed where direct_samples > 0
+    const DirectGroups* direct = nullptr; ///< emitter samples that share the emission by MIS
     uint32_t first_sample = 0;   ///< of the receiver's sequence, a multiple of samples
     uint32_t seed = 0;
 };
 
+/// Page texel to read for a hit at p on a texel that a wall cuts: the nearest one around it whose
+/// receiver p can see.
+uint32_t texel_on_side(const GatherScene& scene, uint32_t triangle, uint32_t texel, const Vec3& p);
+
 /// Shoots options.samples rays from every receiver of a tile, eight receivers at a time and
 /// stratum by stratum so that rays of a packet stay together (algorithms.md 5.5), and adds what
 /// they meet to sums. Receivers count as lanes of the tile. Returns the rays traced.
-uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, TileSums& sums);
+/// radiance: [page texels] outgoing radiance of the surfaces, w = TexelFlag bits; null: none.
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance, TileSums& sums);
+
+/// Which terms a pass keeps.
+struct TermLimits {
+    uint32_t order = 3; ///< most elements of a term
+};
+
+/// The same for scenes with elements: rows holds each texel's radiance per term (null: none), sums
+/// collects per term.
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

@@ -51,6 +51,7 @@ SurfaceTable::SurfaceTable(const Snapshot& scene) : entries_(scene.triangles.siz
         f |= t.mirrored ? kMirrored : 0;
         f |= closed[instance.mesh] && !material.transmits ? kSolid : 0;
         f |= instance.lightmapped ? 0 : kUnmapped;
+        f |= instance.element != kNoElement ? kSwitch : 0;
         if (instance.lightmapped) {
             const auto uv = texel_triangle(scene, i);
             const Page& page = scene.pages[instance.page];

@@ -14,15 +14,16 @@ struct alignas(32) TileSums {
     float irradiance[3][kTileReceivers];
     float sh[kShCount][kTileReceivers];   ///< luminance of incident radiance
     float previous[kTileReceivers];       ///< luminance of the last odd sample, for pairs
-    float pairs[kTileReceivers];          ///< sum of squared differences inside pairs of strata
     float cosine_sum[kTileReceivers];     ///< sum of cosine / pdf; its expectation is pi per ray
     float inside[kTileReceivers];         ///< rays that met the inside of a solid close by
+    double pairs[kTileReceivers];         ///< sum of squared differences inside pairs of strata; squares of extreme powers leave a float's range
     std::vector<float> sh_rgb;            ///< [27][kTileReceivers] if colour is kept
 
     void clear(bool keep_sh) {
         for (auto& c : irradiance) std::fill(std::begin(c), std::end(c), 0.0f);
         for (auto& c : sh) std::fill(std::begin(c), std::end(c), 0.0f);
-        for (auto* a : {previous, pairs, cosine_sum, inside}) std::fill(a, a + kTileReceivers, 0.0f);
+        std::fill(std::begin(pairs), std::end(pairs), 0.0);
+        for (auto* a : {previous, cosine_sum, inside}) std::fill(a, a + kTileReceivers, 0.0f);
         sh_rgb.assign(keep_sh ? size_t{3} * kShCount * kTileReceivers : 0, 0.0f);
     }
     /// Adds one sample: flux density facing the direction w (local frame, w.z > 0).
@@ -40,7 +41,7 @@ struct alignas(32) TileSums {
     /// the variance inside (Cochran 1977, 5A.12). sample counts from 0.
     void add_pair(uint32_t lane, uint32_t sample, float value) {
         if (sample & 1) {
-            const float d = value - previous[lane];
+            const double d = double(value) - previous[lane];
             pairs[lane] += d * d;
         } else {
             previous[lane] = value;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "sampling/light_choice.h"
+
+namespace ajar {
+
+/// The emitter samples of one tile. Emitters of each light set are chosen among themselves, so that
+/// a dim set is lit as cleanly as a bright one; so are those of no set.
+class DirectGroups {
+public:
+    struct Group {
+        uint32_t set;     ///< light set or kNoElement
+        LightChoice choice;
+        uint32_t samples; ///< per receiver
+    };
+
+    /// sets: the light sets to sample, beside the emitters of none.
+    DirectGroups(const EmitterSet& emitters, LightRoles roles, const std::vector<uint32_t>& sets);
+
+    /// Prepares for a tile and gives every group that can light it its samples; groups that no
+    /// visibility ray of the tile saw get unseen_samples. Returns the rays traced.
+    uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples, uint32_t unseen_samples, uint32_t seed);
+
+    const std::vector<Group>& groups() const { return groups_; }
+    /// Expected number of samples that a receiver spends on an emitter, for MIS.
+    float expected(uint32_t local, uint32_t emitter) const;
+
+private:
+    const EmitterSet& emitters_;
+    std::vector<Group> groups_;
+    std::vector<uint32_t> group_of_; ///< per emitter
+};
+
+} // namespace ajar

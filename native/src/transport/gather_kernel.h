@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The gather kernel, a template over the sink (light_sink.h).
+
+#include "base/owen_sobol.h"
+#include "sampling/warp.h"
+#include "transport/light_sink.h"
+#include "transport/shadow.h"
+#include "transport/stratified_batch.h"
+
+namespace ajar {
+
+template <class Sink> struct Gatherer {
+    using Through = typename Sink::Through;
+    static constexpr int kMaxLayers = 64;        ///< transmissive or switchable surfaces one gather ray may cross
+    static constexpr int kMaxUnmapped = 12;      ///< consecutive surfaces without lightmap
+    static constexpr float kNearTexels = 4.0f;   ///< a solid's inside closer than this speaks for an invalid receiver
+    static constexpr float kLeastThrough = 1e-4f; ///< less light than this is not followed
+
+    const GatherScene& g;
+    const GatherOptions& o;
+    const Tile& tile;
+    Sink sink;
+    float mis_gather;
+    uint64_t rays = 0;
+    StratifiedBatch batch;
+
+    /// Where a gather ray comes from.
+    struct Origin {
+        uint32_t local;
+        float cosine;
+        uint32_t seed;
+    };
+
+    void run() {
+        const uint32_t count = std::min(o.samples, StratifiedBatch::kRays);
+        for (uint32_t begin = 0; begin < o.samples; begin += count) {
+            g.progress.check_cancel();
+            batch.fill(g.receivers, tile, o.first_sample + begin, count, o.seed);
+            for (uint32_t s = 0; s < count; ++s)
+                for (uint32_t first = 0; first < tile.count; first += kLanes) shoot(first, s, begin + s);
+        }
+    }
+
+    void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
+        RayPacket packet;
+        alignas(32) int32_t valid[kLanes];
+        Vec3 local_direction[kLanes];
+        float weight[kLanes];
+        packet.prepare(kMaskGather);
+        const uint32_t k_count = g.receivers.positions_per_texel;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            const size_t i = size_t{stratum} * kTileReceivers + first + lane;
+            const uint32_t r = tile.first + std::min(first + lane, tile.count - 1);
+            valid[lane] = first + lane < tile.count ? -1 : 0;
+            const Vec3 w = sample_hemisphere({batch.x[i], batch.y[i]}, o.share);
+            local_direction[lane] = w;
+            weight[lane] = 1.0f / hemisphere_pdf(std::max(w.z, 1e-6f), o.share);
+            // Neighbouring strata visit all positions, and so does each stratum over the batches, in an
+            // order that does not follow the sequence.
+            const uint32_t turn = shuffle_index(sample / StratifiedBatch::kRays, hash32(g.receivers.texel[r] ^ o.seed)) & 0xffffu;
+            const Vec3 p = g.receivers.origins(r)[(stratum + turn) % k_count];
+            packet.set(lane, p, g.receivers.frame[r].to_world(w), std::numeric_limits<float>::infinity());
+        }
+        g.tracer.intersect(valid, packet);
+        for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
+            const uint32_t local = first + lane;
+            const Vec3& w = local_direction[lane];
+            ++rays;
+            shade(lane, local, packet, sample);
+            sink.add_cosine(local, weight[lane] * w.z);
+            sink.end_sample(local, sample, w, weight[lane]);
+        }
+    }
+
+    /// Most rays meet an ordinary lightmapped surface; all else takes the long way.
+    void shade(uint32_t lane, uint32_t local, const RayPacket& packet, uint32_t sample) {
+        const uint32_t triangle = packet.triangle[lane], receiver = tile.first + local;
+        const Vec3 w = packet.direction(lane);
+        const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
+        const uint8_t special = SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch | (o.emission ? SurfaceTable::kEmits : 0);
+        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z), hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
+        const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, w};
+        const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
+        const Through through = sink.start(g.scene, g.receivers.triangle[receiver]);
+        if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special)) return first_hit(ray, hit, through, from);
+        walk(ray, hit, through, from, kMaxLayers);
+    }
+
+    /// The general case: emission, layers of transmissive and switchable surfaces, back faces.
+    void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers) {
+        while (layers-- > 0) {
+            if (hit.triangle == kMiss) return sky(ray.direction, through, from);
+            const uint8_t f = g.surfaces.flags(hit.triangle);
+            if (Sink::kSwitches && (f & SurfaceTable::kSwitch) != 0) {
+                if (!meet_switch(ray, hit, through, from, layers)) return;
+            } else if (!meet_fixed(ray, hit, f, through, from, layers)) {
+                return;
+            }
+            ray.tnear = next_tnear(hit.t);
+            ++rays;
+            hit = g.tracer.intersect(ray, kMaskGather);
+        }
+    }
+
+    /// Light of a surface that is always there; true if some goes through it.
+    bool meet_fixed(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, int layer) {
+        if (is_inside(hit, f)) {
+            if (hit.t < kNearTexels * g.receivers.texel_size[tile.first + from.local]) sink.add_inside(from.local);
+            return false;
+        }
+        return shine(ray, hit, f, through, from, layer);
+    }
+
+    /// A surface that may be there: its light under the condition that it is, and what lies behind
+    /// it under the condition that it is not. True if the latter can be.
+    bool meet_switch(const Ray& ray, const Hit& hit, Through& through, const Origin& from, int layers) {
+        if constexpr (Sink::kSwitches) {
+            const Presence p = g.scene.presence(hit.triangle);
+            const uint8_t f = g.surfaces.flags(hit.triangle);
+            Through there = through;
+            if (there.condition.require(p.element, p.state) && !is_inside(hit, f) && shine(ray, hit, f, there, from, layers)) {
+                Ray behind = ray;
+                behind.tnear = next_tnear(hit.t);
+                ++rays;
+                walk(behind, g.tracer.intersect(behind, kMaskGather), there, from, layers);
+            }
+            return through.condition.require(p.element, !p.state);
+        }
+        return false;
+    }
+
+    static bool is_inside(const Hit& hit, uint8_t f) { return hit.back && (f & (SurfaceTable::kOneSided | SurfaceTable::kSolid)) != 0; }
+
+    /// What a surface sends along the ray; true if light from behind gets through, dimmed.
+    bool shine(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, int layer) {
+        const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
+        if (mapped && !(f & SurfaceTable::kTransmits)) {
+            if (o.emission && (f & SurfaceTable::kEmits)) emission(g.scene.emission(hit.triangle, hit.u, hit.v), ray, hit, through, from);
+            first_hit(ray, hit, through, from);
+            return false;
+        }
+        const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
+        if (f & SurfaceTable::kEmits) emission(s.emission, ray, hit, through, from);
+        if (mapped) first_hit(ray, hit, through, from);
+        else unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0);
+        through.color *= s.transmittance;
+        return max_component(through.color) > kLeastThrough;
+    }
+
+    float mis_weight(uint32_t emitter, float density, const Origin& from) const {
+        if (o.direct == nullptr) return 0.0f; // emitter samples were all: none asked here
+        const float own = mis_gather * hemisphere_pdf(from.cosine, o.share);
+        return own / (own + density * o.direct->expected(from.local, emitter));
+    }
+
+    void sky(const Vec3& w, const Through& through, const Origin& from) {
+        const Sky& s = g.scene.sky;
+        if (!o.emission || !s.lit()) return;
+        const uint32_t e = g.emitters.sky_emitter();
+        const float weight = e == EmitterSet::kNone ? 1.0f : mis_weight(e, g.emitters.sky_pdf(w), from);
+        sink.light(through, kNoElement, s.radiance(w) * weight);
+    }
+
+    void emission(const Vec3& radiance, const Ray& ray, const Hit& hit, const Through& through, const Origin& from) {
+        if (!o.emission) return;
+        const uint32_t e = g.emitters.emitter_of(hit.triangle);
+        float weight = 1.0f;
+        if (e != EmitterSet::kNone) {
+            const float facing = std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle)));
+            weight = mis_weight(e, g.emitters.triangle_pdf(hit.triangle, hit.t, facing), from);
+        }
+        sink.light(through, g.scene.instance_of(hit.triangle).light_set, radiance * weight);
+    }
+
+    /// What a lightmapped surface sends to a receiver. Bright texels share it with the emitter
+    /// samples that aim at them.
+    void first_hit(const Ray& ray, const Hit& hit, const Through& through, const Origin& from) {
+        if (!sink.has_texels()) return;
+        const uint32_t texel = lit_texel(ray, hit);
+        float weight = 1.0f, density = 0.0f;
+        if ((sink.flags(texel) & kTexelBright) != 0 && o.direct != nullptr)
+            if (const uint32_t e = g.emitters.bright_emitter(texel, density); e != EmitterSet::kNone) {
+                const float facing = std::max(std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle))), 1e-9f);
+                weight = mis_weight(e, density * hit.t * hit.t / facing, from);
+            }
+        sink.texel(through, texel, weight);
+    }
+
+    /// Texel whose light a hit sees. Where a wall cuts the texel, one on the hit's side of it.
+    uint32_t lit_texel(const Ray& ray, const Hit& hit) const {
+        const uint32_t texel = g.surfaces.texel(hit.triangle, hit.u, hit.v);
+        if ((sink.flags(texel) & kTexelCut) == 0) return texel;
+        return texel_on_side(g, hit.triangle, texel, ray.origin + ray.direction * hit.t);
+    }
+
+    /// Surfaces without a lightmap have no stored light: one emitter sample and one more ray stand
+    /// in. Bounces there are free, they do not count as one of the series.
+    void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, uint32_t seed, int depth) {
+        if (depth >= kMaxUnmapped || !(max_component(reflectance) > 0.0f)) return;
+        Vec3 n = g.scene.geometric_normal(hit.triangle);
+        if (hit.back) n = -n;
+        const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n);
+        through.color *= reflectance;
+        if (o.unmapped_direct) direct_light(p, n, through, hash_combine(seed, 0x11u));
+        // Russian roulette by reflectance keeps chains short in dark rooms.
+        const float survive = depth == 0 ? 1.0f : std::min(1.0f, max_component(reflectance));
+        if (unit_float(hash_combine(seed, 0x22u)) >= survive) return;
+        const Vec3 w = frame_from_normal(n).to_world(sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f));
+        through.color /= survive;
+        path({p, w}, through, hash_combine(seed, 0x44u), depth + 1, kMaxLayers);
+    }
+
+    /// What one emitter sample sends off a surface at p.
+    void direct_light(const Vec3& p, const Vec3& n, Through through, uint32_t seed) {
+        float chance;
+        const uint32_t e = g.emitters.pick_anywhere(p, n, hash32(seed), chance);
+        if (e == EmitterSet::kNone) return;
+        const EmitterSample s = g.emitters.sample(e, p, owen_sobol(0, seed));
+        const float cosine = glm::dot(s.direction, n);
+        if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return;
+        if constexpr (Sink::kSwitches)
+            if (const Presence there = g.emitters.presence(e); there.element != kNoElement && !through.condition.require(there.element, there.state)) return;
+        const Vec3 light = s.weight * (cosine * kInvPi / chance);
+        const Ray ray{p, s.direction, 0.0f, shadow_end(g.tracer, s)};
+        if (!s.casts_shadow) return sink.light(through, g.emitters.set_of(e), light);
+        if (g.tracer.intersect(ray, kMaskShadowOpaque).triangle != kMiss) return;
+        through_shadow<Sink>(g.scene, g.tracer, ray, through, [&](const Through& t) { sink.light(t, g.emitters.set_of(e), light); });
+    }
+
+    /// Follows a ray of such a stand-in. What emitter samples find there is left to them.
+    void path(Ray ray, Through through, uint32_t seed, int depth, int layers) {
+        while (layers-- > 0) {
+            ++rays;
+            const Hit hit = g.tracer.intersect(ray, kMaskGather);
+            if (hit.triangle == kMiss) {
+                if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit()) sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
+                return;
+            }
+            Through behind = through;
+            if constexpr (Sink::kSwitches) {
+                const Presence p = g.scene.presence(hit.triangle);
+                if (p.element != kNoElement) {
+                    Through there = through;
+                    if (there.condition.require(p.element, p.state) && path_shine(ray, hit, there, seed, depth, layers)) {
+                        Ray on = ray;
+                        on.tnear = next_tnear(hit.t);
+                        path(on, there, hash_combine(seed, 0x55u), depth, layers);
+                    }
+                    if (!behind.condition.require(p.element, !p.state)) return;
+                } else if (!path_shine(ray, hit, behind, seed, depth, layers)) {
+                    return;
+                }
+            } else if (!path_shine(ray, hit, behind, seed, depth, layers)) {
+                return;
+            }
+            through = behind;
+            ray.tnear = next_tnear(hit.t);
+        }
+    }
+
+    /// Light of one surface on such a path; true if some from behind gets through.
+    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layer) {
+        const uint8_t f = g.surfaces.flags(hit.triangle);
+        if (is_inside(hit, f)) return false;
+        const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
+        if (mapped && !(f & (SurfaceTable::kEmits | SurfaceTable::kTransmits))) {
+            if (sink.has_texels()) sink.texel(through, lit_texel(ray, hit), 1.0f);
+            return false;
+        }
+        const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
+        if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone) sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
+        if (!mapped) unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth);
+        else if (sink.has_texels()) sink.texel(through, lit_texel(ray, hit), 1.0f);
+        through.color *= s.transmittance;
+        return max_component(through.color) > kLeastThrough;
+    }
+};
+
+template <class Sink> uint64_t run_gather(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Sink& sink) {
+    Gatherer<Sink> gatherer{scene, options, tile, sink, static_cast<float>(options.samples), 0, {}};
+    gatherer.run();
+    return gatherer.rays;
+}
+
+} // namespace ajar

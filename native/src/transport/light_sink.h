@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// What the kernels do with the light that arrives. The kernels are compiled once per sink, so a
+// scene pays only for what it has: one colour, colours per light set, or colours per product of
+// elements with the conditions that switchable surfaces put on a path.
+
+#include "transport/gather.h"
+
+namespace ajar {
+
+/// Everything adds up to one colour.
+class PlainSink {
+public:
+    static constexpr bool kSwitches = false;
+    /// What is left of light on the way to the receiver.
+    struct Through {
+        Vec3 color{1.0f};
+    };
+
+    PlainSink(const Vec4* radiance, TileSums& sums) : radiance_(radiance), sums_(sums) {}
+
+    Through start(const Snapshot&, uint32_t) const { return {}; }
+    bool has_texels() const { return radiance_ != nullptr; }
+    uint8_t flags(uint32_t texel) const { return static_cast<uint8_t>(radiance_[texel].w); }
+    void light(const Through& through, uint32_t, const Vec3& radiance) { arrived_ += through.color * radiance; }
+    void texel(const Through& through, uint32_t texel, float weight) { arrived_ += through.color * Vec3(radiance_[texel]) * weight; }
+    void add_inside(uint32_t lane) { sums_.inside[lane] += 1.0f; }
+    void add_cosine(uint32_t lane, float value) { sums_.cosine_sum[lane] += value; }
+    /// Books the light of one sample from direction w (local frame), times scale.
+    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
+        const Vec3 facing = is_finite(arrived_) ? arrived_ * scale : Vec3(0.0f);
+        arrived_ = Vec3(0.0f);
+        sums_.add_pair(lane, sample, luminance(facing) * w.z);
+        if (facing != Vec3(0.0f)) sums_.add(lane, w, facing);
+    }
+
+private:
+    const Vec4* radiance_;
+    TileSums& sums_;
+    Vec3 arrived_{0.0f};
+};
+
+/// A colour per term. Without switchable surfaces terms are light sets and nothing else.
+template <bool Switches> class TermSink {
+public:
+    static constexpr bool kSwitches = Switches;
+    struct Through {
+        Vec3 color{1.0f};
+        Condition condition;
+    };
+
+    TermSink(const Snapshot& scene, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums)
+        : scene_(scene), rows_(rows), table_(table), limits_(limits), sums_(sums) {}
+
+    /// A receiver on a switchable surface matters only while that surface is there.
+    Through start(const Snapshot& scene, uint32_t triangle) const {
+        Through t;
+        if constexpr (Switches)
+            if (const Presence p = scene.presence(triangle); p.element != kNoElement) t.condition.assume(p.element, p.state);
+        return t;
+    }
+    bool has_texels() const { return rows_ != nullptr; }
+    uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
+    void light(const Through& through, uint32_t set, const Vec3& radiance) { arrive(through.condition, Term(set), through.color * radiance); }
+    void texel(const Through& through, uint32_t texel, float weight) {
+        for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) {
+            const Vec3 light = through.color * e->color * weight;
+            if (!Switches) sums_.arrive(sums_.slot_of(e->term), light);
+            else arrive(through.condition, table_[e->term], light);
+        }
+    }
+    void add_inside(uint32_t lane) { sums_.add_inside(lane); }
+    void add_cosine(uint32_t lane, float value) { sums_.add_cosine(lane, value); }
+    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) { sums_.end_sample(lane, sample, w, scale); }
+
+private:
+    void arrive(const Condition& condition, const Term& term, const Vec3& light) {
+        condition.expand(term, limits_.order, [&](const Term& product, float sign) {
+            if (product.order() < 2 || may_combine(product)) sums_.arrive(sums_.slot_of(product), light * sign);
+        });
+    }
+    bool may_combine(const Term& term) const {
+        if (term.set() != kNoElement && !scene_.elements[term.set()].combines) return false;
+        for (uint32_t i = 0; i < term.switch_count(); ++i)
+            if (!scene_.elements[term.element(i)].combines) return false;
+        return true;
+    }
+
+    const Snapshot& scene_;
+    const TermRows* rows_;
+    const TermTable& table_;
+    TermLimits limits_;
+    TermSums& sums_;
+};
+
+/// Follows a shadow ray that fixed opaque surfaces leave free through tinted and switchable ones.
+/// Calls emit(through) for each way in which light gets along it.
+template <class Sink, class Emit> void through_shadow(const Snapshot& scene, const Tracer& tracer, Ray ray, typename Sink::Through through, Emit&& emit) {
+    if constexpr (Sink::kSwitches) {
+        for (Hit hit; (hit = tracer.intersect(ray, kMaskShadowSwitch)).triangle != kMiss;) {
+            const Presence p = scene.presence(hit.triangle);
+            ray.tnear = next_tnear(hit.t);
+            auto there = through;
+            if (there.condition.require(p.element, p.state)) {
+                there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
+                if (max_component(there.color) > 0.0f) through_shadow<Sink>(scene, tracer, ray, there, emit);
+            }
+            if (!through.condition.require(p.element, !p.state)) return;
+        }
+        ray.tnear = 0.0f;
+    }
+    if (tracer.has_transmissive()) through.color *= tracer.tint(ray);
+    if (max_component(through.color) > 0.0f) emit(through);
+}
+
+} // namespace ajar
