@@ -164,6 +164,9 @@ uint32_t Scene::instance(uint32_t mesh, uint32_t material, uint32_t page, const 
     for (int i = 0; transform != nullptr && i < 12; ++i) d.transform[i] = transform[i];
     d.material_count = 1;
     d.materials = &material;
+    d.element = current_switch;
+    d.open_pose = open_pose;
+    d.light_set = current_set;
     if (page != AJAR_NONE) {
         d.surface = AJAR_SURFACE_LIGHTMAP;
         d.lightmap_layer = 0;
@@ -176,6 +179,7 @@ uint32_t Scene::instance(uint32_t mesh, uint32_t material, uint32_t page, const 
 
 uint32_t Scene::light(ajar_light_desc d, const double* transform) {
     for (int i = 0; i < 12; ++i) d.transform[i] = transform[i];
+    d.light_set = current_set;
     uint32_t id = 0;
     check(ajar_scene_add_light(scene_, &d, &id));
     return id;
@@ -190,6 +194,17 @@ uint32_t Scene::point_light(Float3 p, float watts, float radius, bool primary) {
     d.energy = watts;
     d.radius = radius;
     return light(d, translation(p[0], p[1], p[2]).data());
+}
+
+uint32_t Scene::element(uint32_t kind, const std::string& name, bool bounces) {
+    ajar_element_desc d;
+    ajar_element_desc_init(&d);
+    d.name = name.c_str();
+    d.kind = kind;
+    d.bounce = bounces;
+    uint32_t id = 0;
+    check(ajar_scene_add_element(scene_, &d, &id));
+    return id;
 }
 
 void Scene::sky(Float3 radiance) {
@@ -228,6 +243,23 @@ std::string Bake::report() const {
     check(ajar_job_report(job_, text.data(), &size));
     text.pop_back();
     return text;
+}
+
+std::vector<ajar_term_info> Bake::terms() const {
+    uint32_t count = 0;
+    check(ajar_job_term_count(job_, &count));
+    std::vector<ajar_term_info> out(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        ajar_term_info_init(&out[i]);
+        check(ajar_job_term(job_, i, &out[i]));
+    }
+    return out;
+}
+
+Layer Bake::term(uint32_t index, uint32_t width, uint32_t height, uint32_t page) const {
+    Layer l{width, height, 3, std::vector<float>(size_t{3} * width * height)};
+    check(ajar_job_read_term(job_, index, page, l.data.data(), l.data.size()));
+    return l;
 }
 
 ajar_settings settings(uint32_t bounces, uint32_t samples) {

@@ -50,6 +50,11 @@ public:
     uint32_t instance(uint32_t mesh, uint32_t material, uint32_t page, const std::string& name = "object", const double* transform = nullptr);
     uint32_t light(ajar_light_desc desc, const double* transform);
     uint32_t point_light(Float3 position, float watts, float radius = 0.0f, bool primary = false);
+    /// kind: AJAR_ELEMENT_*.
+    uint32_t element(uint32_t kind, const std::string& name, bool bounces = true);
+    /// Elements that the next instances and lights belong to; AJAR_NONE for none.
+    uint32_t current_switch = AJAR_NONE, current_set = AJAR_NONE;
+    bool open_pose = false;
     void sky(Float3 radiance);
     void commit();
     ajar_scene handle() const { return scene_; }
@@ -73,6 +78,10 @@ public:
     Bake(const Bake&) = delete;
     Layer layer(uint32_t which, uint32_t page = 0) const;
     std::string report() const;
+    /// All terms of the bake, the base first.
+    std::vector<ajar_term_info> terms() const;
+    /// Irradiance of one term over a page of this size.
+    Layer term(uint32_t index, uint32_t width, uint32_t height, uint32_t page = 0) const;
     ajar_job handle() const { return job_; }
 
 private:

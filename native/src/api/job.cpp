@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "api/job.h"
 
+#include "pass/term_bake.h"
+
 #include <chrono>
 #include <new>
 
@@ -49,7 +51,8 @@ void Job::bake() {
     const EmitterSet emitters(scene, pool, progress_);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
-    output_.bake = Baker({scene, tracer, surfaces, emitters, output_.receivers, progress_}, settings_, pool, progress_).run();
+    const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress_};
+    output_.bake = scene.elements.empty() ? Baker(gather, settings_, pool, progress_).run() : TermBaker(gather, settings_, pool, progress_).run();
     progress_.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress_);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "package/baked_pages.h"
 
+#include "package/baked_terms.h"
+
 #include "post/dilate.h"
 #include "post/stitch.h"
 
@@ -17,12 +19,13 @@ struct Assembler {
     const LightmapReceivers& receivers;
     const BakeResult& result;
     BakedPages out;
-    std::vector<uint8_t> state;
+    std::vector<uint8_t> state, usable;
+    std::unique_ptr<SeamSolver> solver;
 
     void scatter();
     void stitch();
     void encode(ThreadPool& pool, Progress& progress);
-    void fill();
+    void fill(ThreadPool& pool, Progress& progress);
 };
 
 void Assembler::scatter() {
@@ -44,12 +47,14 @@ void Assembler::scatter() {
         for (size_t b = 0; b < out.bounces.size(); ++b) out.bounces[b][t] = result.bounces[b][r];
         for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c) out.sh_rgb[size_t{t} * 27 + c] = result.sh_rgb[size_t{r} * 27 + c];
     }
+    usable.resize(state.size());
+    for (size_t i = 0; i < state.size(); ++i) usable[i] = state[i] >= kRing;
 }
 
 void Assembler::stitch() {
-    std::vector<uint8_t> usable(state.size());
-    for (size_t i = 0; i < state.size(); ++i) usable[i] = state[i] >= kRing;
-    out.seam_points = stitch_seams(find_seams(scene), usable, out.irradiance);
+    solver = std::make_unique<SeamSolver>(find_seams(scene), usable);
+    out.seam_points = solver->points();
+    if (out.seam_points != 0) solver->solve(out.irradiance);
 }
 
 void Assembler::encode(ThreadPool& pool, Progress& progress) {
@@ -68,10 +73,9 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
     for (const uint64_t c : clamped) out.clamped_texels += c;
 }
 
-void Assembler::fill() {
-    std::vector<uint8_t> known(state.size());
-    for (size_t i = 0; i < state.size(); ++i) known[i] = state[i] >= kRing;
-    const std::vector<uint32_t> source = nearest_known(scene.pages, known, kFillRadius);
+void Assembler::fill(ThreadPool& pool, Progress& progress) {
+    const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
+    if (!result.terms.terms.empty()) out.terms = make_terms(scene, receivers, result.terms, usable, source, solver.get(), pool, progress);
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
         if (source[i] == i) continue;
@@ -96,12 +100,12 @@ const char* kind_name(ElementKind kind) {
 
 BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result, const ajar_settings& settings,
                       ThreadPool& pool, Progress& progress) {
-    Assembler a{scene, receivers, result, {}, {}};
+    Assembler a{scene, receivers, result, {}, {}, {}, {}};
     a.scatter();
     if (settings.stitch_seams != 0) a.stitch();
     progress.begin_stage(AJAR_STAGE_ENCODE, 1.0f);
     a.encode(pool, progress);
-    a.fill();
+    a.fill(pool, progress);
     return std::move(a.out);
 }
 

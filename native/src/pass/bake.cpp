@@ -4,25 +4,13 @@
 // what the pass before it finished, so no result depends on the order of tiles.
 #include "pass/bake.h"
 
-#include "base/hash.h"
-#include "transport/direct.h"
+#include "pass/bake_parts.h"
 
-#include <bit>
 #include <memory>
 
 namespace ajar {
 
 namespace {
-
-constexpr uint32_t kSourceSamples = 16;   ///< emitter samples per receiver that feed the bounces
-constexpr uint32_t kPilotRays = 64;
-constexpr uint32_t kPilotReceivers = 8;   ///< of each tile
-constexpr uint32_t kCalibrationStep = 4;  ///< every n-th tile is estimated twice
-constexpr float kFinalShare = 0.5f;       ///< cosine share of the final rays (algorithms.md 1.10)
-constexpr double kBrightFactor = 6.0;     ///< of the mean radiance; brighter texels are aimed at
-constexpr float kQuadNormal = 0.95f;      ///< receivers of a 2x2 block share bounce rays if their normals agree
-
-enum Salt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
 
 std::unique_ptr<TileSums> make_sums(bool keep_sh) {
     auto sums = std::make_unique<TileSums>();
@@ -38,40 +26,12 @@ Vec3 gathered(const TileSums& s, uint32_t lane) {
     return s.cosine_sum[lane] > 0.0f ? sum_of(s, lane) * (kPi / s.cosine_sum[lane]) : Vec3(0.0f);
 }
 
-/// The parallelogram that a texel covers on its triangle.
-BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
-    const uint32_t triangle = receivers.triangle[r];
-    const Triangle& t = scene.triangles[triangle];
-    const auto uv = texel_triangle(scene, triangle);
-    const Page& page = scene.pages[scene.instance_of(triangle).page];
-    const auto local = static_cast<uint32_t>(receivers.texel[r] - page.first_texel);
-    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = Vec2(local % page.width, local / page.width) + 0.5f - uv[0];
-    const float det = a.x * b.y - a.y * b.x;
-    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin, eb = scene.positions[t.vertex[2]] - origin;
-    BrightTexel out;
-    out.texel = receivers.texel[r];
-    out.edge_x = (ea * b.y - eb * a.y) / det;
-    out.edge_y = (eb * a.x - ea * b.x) / det;
-    out.center = origin + out.edge_x * c.x + out.edge_y * c.y;
-    out.normal = scene.geometric_normal(triangle);
-    return out;
-}
-
-/// Receivers of one block share coarse light if no wall stands between and their normals agree.
-bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
-    return receivers.shares[a] != 0 && receivers.shares[b] != 0 && glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
-}
-
-uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
-    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
-}
-
 } // namespace
 
 /// One tile's answer before it is stored.
 struct Baker::TileEstimate {
     std::unique_ptr<TileSums> direct, gather;
-    Plan plan;
+    RayPlan plan;
 
     Vec3 irradiance(uint32_t lane) const {
         Vec3 e = gathered(*gather, lane);
@@ -167,7 +127,7 @@ void Baker::bounce(uint32_t index) {
     keep_bounce(current_);
 }
 
-Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh) {
+Baker::TileEstimate Baker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed, bool keep_sh) {
     TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
     const GatherScene scene = final_scene();
     DirectGroups groups(scene.emitters, LightRoles::stored, {});
@@ -188,25 +148,16 @@ Baker::TileEstimate Baker::estimate(const Tile& tile, const Plan& plan, uint32_t
     return t;
 }
 
-/// Only texels that one triangle fills can be aimed at exactly; what stands out elsewhere is left
-/// to the gather.
 EmitterSet Baker::find_bright_texels() {
     std::vector<BrightTexel> bright;
     if (settings_.bounces > 0) {
-        double mean = 0.0, weight = 0.0;
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
-            const double area = double(s_.receivers.texel_size[r]) * s_.receivers.texel_size[r];
-            mean += area * luminance(Vec3(radiance_[s_.receivers.texel[r]]));
-            weight += area;
-        }
-        const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
+        std::vector<float> level(s_.receivers.count());
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
+        for (const uint32_t r : bright_receivers(s_.receivers, level)) {
             Vec4& radiance = radiance_[s_.receivers.texel[r]];
-            if (!s_.receivers.full[r] || s_.receivers.cut[r] || !(luminance(Vec3(radiance)) > threshold)) continue;
-            BrightTexel t = bright_texel(s_.scene, s_.receivers, r);
-            t.radiance = Vec3(radiance);
+            bright.push_back(bright_texel(s_.scene, s_.receivers, r));
+            bright.back().radiance = Vec3(radiance);
             radiance.w += float{kTexelBright};
-            bright.push_back(t);
         }
     }
     result_.bright_texels = static_cast<uint32_t>(bright.size());
@@ -215,63 +166,33 @@ EmitterSet Baker::find_bright_texels() {
 
 /// Pilot: few receivers of every tile with few rays, discarded afterwards; their pooled variance
 /// decides each tile's ray counts once (algorithms.md 10.3, 10.4).
-std::vector<Baker::Plan> Baker::plan_rays() {
+std::vector<RayPlan> Baker::plan_rays() {
     const size_t count = s_.receivers.tiles.size();
-    const uint32_t gather = gathers() ? settings_.samples : 0;
-    std::vector<Plan> plan(count, {gather, settings_.direct_samples});
+    std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
     const bool timed = settings_.time_limit > 0.0f;
     if (!(settings_.noise_target > 0.0f) && !timed) return plan;
 
-    std::vector<Vec3> pilot(count); // luminance, gather and direct variance at the pilot's counts
+    std::vector<PilotResult> pilot(count);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
-    const Plan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
+    const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
     pool_.for_each(count, progress_, [&](size_t i) {
-        Tile tile = s_.receivers.tiles[i];
-        const uint32_t skip = tile.count > kPilotReceivers ? (hash32(static_cast<uint32_t>(i)) % (tile.count - kPilotReceivers)) & ~7u : 0;
-        tile = {tile.first + skip, std::min(kPilotReceivers, tile.count)};
+        const Tile tile = pilot_part(s_.receivers.tiles[i], static_cast<uint32_t>(i));
         const TileEstimate t = estimate(tile, small, hash_combine(settings_.seed, kSaltPilot), false);
-        for (uint32_t lane = 0; lane < tile.count; ++lane)
-            pilot[i] += Vec3(luminance(t.irradiance(lane)), t.gather_variance(lane), t.direct_variance(lane)) / static_cast<float>(tile.count);
+        const float share = 1.0f / static_cast<float>(tile.count);
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            pilot[i].level += luminance(t.irradiance(lane)) * share;
+            pilot[i].gather_variance += static_cast<float>(t.gather_variance(lane)) * share;
+            pilot[i].direct_variance += static_cast<float>(t.direct_variance(lane)) * share;
+        }
     });
     const double seconds_per_ray = (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
-    if (settings_.noise_target > 0.0f) {
-        std::vector<float> levels;
-        for (const Vec3& p : pilot) levels.push_back(p.x);
-        std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
-        const float floor = levels.empty() ? 0.0f : 0.01f * levels[levels.size() / 2];
-        for (size_t i = 0; i < count; ++i) {
-            // The neighbours in tile order pool with the tile itself: eight receivers are few.
-            const Vec3 near = (pilot[i > 0 ? i - 1 : i] + pilot[i] * 2.0f + pilot[i + 1 < count ? i + 1 : i]) * 0.25f;
-            const float allowed = settings_.noise_target * (pilot[i].x + floor);
-            const float budget = 0.5f * allowed * allowed + 1e-30f;
-            if (gather != 0) plan[i].gather = power_of_two(kPilotRays * std::max(near.y, pilot[i].y) / budget, 64, std::max(settings_.samples, 64u));
-            plan[i].direct = power_of_two(static_cast<float>(small.direct) * std::max(near.z, pilot[i].z) / budget, std::min(16u, settings_.direct_samples), std::max(settings_.direct_samples, 1u));
-        }
-    }
-    if (timed) limit_time(plan, seconds_per_ray);
+    if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());
+    if (timed) result_.time_limited = limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
     return plan;
 }
 
-void Baker::limit_time(std::vector<Plan>& plan, double seconds_per_ray) {
-    const double left = 0.92 * (settings_.time_limit - progress_.elapsed());
-    const auto cost = [&] {
-        double rays = 0.0;
-        for (size_t i = 0; i < plan.size(); ++i) rays += double(plan[i].gather + plan[i].direct) * s_.receivers.tiles[i].count;
-        return rays * seconds_per_ray;
-    };
-    while (cost() > left) {
-        bool changed = false;
-        for (Plan& p : plan) {
-            if (p.gather > 8) p.gather /= 2, changed = true;
-            if (p.direct > 4) p.direct /= 2, changed = true;
-        }
-        if (!changed) break;
-        result_.time_limited = true;
-    }
-}
-
-void Baker::final_gather(const std::vector<Plan>& plan) {
+void Baker::final_gather(const std::vector<RayPlan>& plan) {
     const uint32_t n = s_.receivers.count();
     const bool keep_sh = settings_.keep_sh != 0;
     result_.irradiance.resize(n);
@@ -301,7 +222,7 @@ void Baker::final_gather(const std::vector<Plan>& plan) {
 
 /// The strata estimate is biased up where strata differ in mean. A second, independent answer
 /// for a few receivers measures by how much.
-void Baker::calibrate_error(const std::vector<Plan>& plan) {
+void Baker::calibrate_error(const std::vector<RayPlan>& plan) {
     const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
     std::vector<Vec2> parts(count, Vec2(0.0f));
     pool_.for_each(count, progress_, [&](size_t k) {
@@ -343,7 +264,7 @@ BakeResult Baker::run() {
     }
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
-    const std::vector<Plan> plan = plan_rays();
+    const std::vector<RayPlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
     final_gather(plan);
     calibrate_error(plan);

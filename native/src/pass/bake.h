@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "transport/gather.h"
+#include "pass/bake_parts.h"
+#include "pass/term_result.h"
 
 #include <memory>
 #include <vector>
@@ -20,6 +21,8 @@ struct BakeResult {
     std::vector<Vec3> source;           ///< irradiance of all lights and bounces that the final gather reflected
 
     std::vector<double> bounce_means;   ///< mean luminance of each bounce's irradiance
+    TermResult terms;                       ///< light of every term but the base, which the arrays above hold
+
     uint32_t bright_texels = 0;         ///< aimed at by the final gather
     float error_calibration = 1.0f;     ///< measured standard error over the strata estimate
     bool time_limited = false;          ///< the time limit, not the target, set the ray counts
@@ -32,9 +35,6 @@ public:
     BakeResult run();
 
 private:
-    struct Plan { ///< ray counts of a tile
-        uint32_t gather = 0, direct = 0;
-    };
     struct TileEstimate;
 
     void direct_source();
@@ -44,11 +44,10 @@ private:
     /// Emitters of the final gather: the scene's, and the texels that stand out.
     EmitterSet find_bright_texels();
     void keep_bounce(const std::vector<Vec3>& irradiance);
-    std::vector<Plan> plan_rays();
-    void limit_time(std::vector<Plan>& plan, double seconds_per_ray);
-    TileEstimate estimate(const Tile& tile, const Plan& plan, uint32_t seed, bool keep_sh);
-    void final_gather(const std::vector<Plan>& plan);
-    void calibrate_error(const std::vector<Plan>& plan);
+    std::vector<RayPlan> plan_rays();
+    TileEstimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed, bool keep_sh);
+    void final_gather(const std::vector<RayPlan>& plan);
+    void calibrate_error(const std::vector<RayPlan>& plan);
     bool gathers() const;
     GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_}; }
 

@@ -9,13 +9,15 @@ constexpr float kLambda = 0.1f;   ///< pull towards the baked value; smaller dar
 constexpr int kIterations = 60;
 constexpr double kTolerance = 1e-8; ///< of the squared residual
 
-/// Row of the system: difference of two bilinear reads, texels renumbered.
+/// Difference of two bilinear reads, texels renumbered.
 struct Row {
     uint32_t column[8];
     float weight[8];
 };
 
-struct System {
+} // namespace
+
+struct SeamSolver::System {
     std::vector<Row> rows;
     std::vector<uint32_t> texel; ///< of each unknown
 
@@ -28,7 +30,11 @@ struct System {
             for (int k = 0; k < 8; ++k) y[r.column[k]] += r.weight[k] * d;
         }
     }
+    void build(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable);
+    std::vector<Vec3> change(const std::vector<Vec3>& x0) const;
 };
+
+namespace {
 
 bool touches_unusable(const BilinearTap& t, const std::vector<uint8_t>& usable) {
     for (int k = 0; k < 4; ++k)
@@ -36,13 +42,24 @@ bool touches_unusable(const BilinearTap& t, const std::vector<uint8_t>& usable) 
     return false;
 }
 
-System make_system(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable) {
-    System s;
+glm::dvec3 dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    glm::dvec3 sum(0.0);
+    for (size_t i = 0; i < a.size(); ++i) sum += glm::dvec3(a[i]) * glm::dvec3(b[i]);
+    return sum;
+}
+
+Vec3 safe_ratio(const glm::dvec3& a, const glm::dvec3& b) {
+    return Vec3(b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0);
+}
+
+} // namespace
+
+void SeamSolver::System::build(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable) {
     std::vector<uint32_t> index(usable.size(), 0xffffffffu);
-    const auto number = [&](uint32_t texel) {
+    const auto number = [&, this](uint32_t texel) {
         if (index[texel] == 0xffffffffu) {
-            index[texel] = static_cast<uint32_t>(s.texel.size());
-            s.texel.push_back(texel);
+            index[texel] = static_cast<uint32_t>(this->texel.size());
+            this->texel.push_back(texel);
         }
         return index[texel];
     };
@@ -57,31 +74,20 @@ System make_system(const std::vector<SeamPoint>& seams, const std::vector<uint8_
             r.weight[k] = a ? p.a.weight[k] : 0.0f;
             r.weight[4 + k] = b ? -p.b.weight[k] : 0.0f;
         }
-        s.rows.push_back(r);
+        rows.push_back(r);
     }
-    return s;
-}
-
-glm::dvec3 dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    glm::dvec3 sum(0.0);
-    for (size_t i = 0; i < a.size(); ++i) sum += glm::dvec3(a[i]) * glm::dvec3(b[i]);
-    return sum;
-}
-
-Vec3 safe_ratio(const glm::dvec3& a, const glm::dvec3& b) {
-    return Vec3(b.x > 0 ? a.x / b.x : 0, b.y > 0 ? a.y / b.y : 0, b.z > 0 ? a.z / b.z : 0);
 }
 
 /// Solves for the change of x, whose start is 0; the three channels run side by side.
-std::vector<Vec3> solve(const System& s, const std::vector<Vec3>& x0) {
+std::vector<Vec3> SeamSolver::System::change(const std::vector<Vec3>& x0) const {
     const size_t n = x0.size();
     std::vector<Vec3> x(n, Vec3(0.0f)), r(n), p(n), q(n);
-    s.apply(x0, q);
+    apply(x0, q);
     for (size_t i = 0; i < n; ++i) p[i] = r[i] = kLambda * x0[i] - q[i];
     glm::dvec3 rr = dot(r, r);
     const glm::dvec3 goal = rr * kTolerance;
     for (int it = 0; it < kIterations && (rr.x > goal.x || rr.y > goal.y || rr.z > goal.z); ++it) {
-        s.apply(p, q);
+        apply(p, q);
         const Vec3 alpha = safe_ratio(rr, dot(p, q));
         for (size_t i = 0; i < n; ++i) x[i] += alpha * p[i], r[i] -= alpha * q[i];
         const glm::dvec3 next = dot(r, r);
@@ -92,16 +98,23 @@ std::vector<Vec3> solve(const System& s, const std::vector<Vec3>& x0) {
     return x;
 }
 
-} // namespace
+SeamSolver::SeamSolver(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable) : system_(std::make_unique<System>()) { system_->build(seams, usable); }
+
+SeamSolver::~SeamSolver() = default;
+
+uint64_t SeamSolver::points() const { return system_->rows.size(); }
+
+void SeamSolver::solve(std::vector<Vec3>& value, bool may_be_negative) const {
+    std::vector<Vec3> x0(system_->texel.size());
+    for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[system_->texel[i]];
+    const std::vector<Vec3> change = system_->change(x0);
+    for (size_t i = 0; i < x0.size(); ++i) value[system_->texel[i]] = may_be_negative ? x0[i] + change[i] : glm::max(x0[i] + change[i], Vec3(0.0f));
+}
 
 uint64_t stitch_seams(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable, std::vector<Vec3>& value) {
-    const System s = make_system(seams, usable);
-    if (s.rows.empty()) return 0;
-    std::vector<Vec3> x0(s.texel.size());
-    for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[s.texel[i]];
-    const std::vector<Vec3> change = solve(s, x0);
-    for (size_t i = 0; i < x0.size(); ++i) value[s.texel[i]] = glm::max(x0[i] + change[i], Vec3(0.0f));
-    return s.rows.size();
+    const SeamSolver solver(seams, usable);
+    if (solver.points() != 0) solver.solve(value);
+    return solver.points();
 }
 
 } // namespace ajar

@@ -3,7 +3,25 @@
 
 #include "receiver/seams.h"
 
+#include <memory>
+
 namespace ajar {
+
+/// Solves the seams of one lightmap for several lights, such as the terms of a bake.
+class SeamSolver {
+public:
+    /// usable covers all page texels; seam points that touch an unusable texel are skipped.
+    SeamSolver(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable);
+    ~SeamSolver();
+    /// Seam points in use.
+    uint64_t points() const;
+    /// Moves value (all page texels) as stitch_seams does; below zero only if may_be_negative.
+    void solve(std::vector<Vec3>& value, bool may_be_negative = false) const;
+
+private:
+    struct System;
+    std::unique_ptr<System> system_;
+};
 
 /// Moves texels as little as possible so that both sides of each seam show the same value:
 /// minimises sum (a.x - b.x)^2 + lambda sum (x - x0)^2 by conjugate gradients, per channel.

@@ -29,6 +29,8 @@ template <class Sink> struct DirectSampler {
     MisCounts mis;
     uint32_t seed;
     Sink sink;
+    float scale = 1.0f;        ///< of what is booked
+    uint32_t first_sample = 0; ///< number of the first sample in the sums
 
     bool prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const;
     void finish(ShadowPacket& packet, uint32_t first, uint32_t sample);
@@ -76,7 +78,7 @@ template <class Sink> void DirectSampler<Sink>::arrive(const ShadowPacket& packe
 template <class Sink> void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t sample) {
     for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
         if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f)) arrive(packet, lane, tile.first + first + lane);
-        sink.end_sample(first + lane, sample, packet.local[lane], 1.0f);
+        sink.end_sample(first + lane, first_sample + sample, packet.local[lane], scale);
     }
 }
 
@@ -99,19 +101,28 @@ template <class Sink> uint64_t DirectSampler<Sink>::run() {
     return rays;
 }
 
-template <class Sink> uint64_t run_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, const Sink& sink) {
-    return group.samples == 0 ? 0 : DirectSampler<Sink>{scene, group, tile, mis, seed, sink}.run();
+/// Every group of a tile, each as the mean over its own samples.
+template <class Sink> uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis, uint32_t seed, const Sink& sink) {
+    uint64_t rays = 0;
+    uint32_t first_sample = 0;
+    for (const DirectGroups::Group& g : groups.groups()) {
+        if (g.samples == 0) continue;
+        const uint32_t own_seed = g.set == kNoElement ? seed : hash_combine(seed, g.set);
+        rays += DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, 1.0f / static_cast<float>(g.samples), first_sample}.run();
+        first_sample += (g.samples + 1) & ~1u; // samples of two groups never make a pair
+    }
+    return rays;
 }
 
 } // namespace
 
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, TileSums& sums) {
-    return run_direct(scene, group, tile, mis, seed, PlainSink(nullptr, sums));
+    return group.samples == 0 ? 0 : DirectSampler<PlainSink>{scene, group, tile, mis, seed, PlainSink(nullptr, sums)}.run();
 }
 
-uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums) {
-    if (scene.scene.has_switches()) return run_direct(scene, group, tile, mis, seed, TermSink<true>(scene.scene, rows, table, limits, sums));
-    return run_direct(scene, group, tile, mis, seed, TermSink<false>(scene.scene, rows, table, limits, sums));
+uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis, uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums) {
+    if (scene.scene.has_switches()) return run_groups(scene, groups, tile, mis, seed, TermSink<true>(scene.scene, rows, table, limits, sums));
+    return run_groups(scene, groups, tile, mis, seed, TermSink<false>(scene.scene, rows, table, limits, sums));
 }
 
 } // namespace ajar

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pass/bake_parts.h"
+
+#include <bit>
+
+namespace ajar {
+
+namespace {
+
+constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
+constexpr float kQuadNormal = 0.95f;  ///< receivers of a 2x2 block share bounce rays if their normals agree
+
+uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
+    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
+}
+
+/// 1% of the median level: what counts as dark.
+float dark_level(const std::vector<PilotResult>& pilot) {
+    std::vector<float> levels;
+    for (const PilotResult& p : pilot) levels.push_back(p.level);
+    if (levels.empty()) return 0.0f;
+    std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
+    return 0.01f * levels[levels.size() / 2];
+}
+
+} // namespace
+
+bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
+    return receivers.shares[a] != 0 && receivers.shares[b] != 0 && glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
+}
+
+BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
+    const uint32_t triangle = receivers.triangle[r];
+    const Triangle& t = scene.triangles[triangle];
+    const auto uv = texel_triangle(scene, triangle);
+    const Page& page = scene.pages[scene.instance_of(triangle).page];
+    const auto local = static_cast<uint32_t>(receivers.texel[r] - page.first_texel);
+    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = Vec2(local % page.width, local / page.width) + 0.5f - uv[0];
+    const float det = a.x * b.y - a.y * b.x;
+    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin, eb = scene.positions[t.vertex[2]] - origin;
+    BrightTexel out;
+    out.texel = receivers.texel[r];
+    out.edge_x = (ea * b.y - eb * a.y) / det;
+    out.edge_y = (eb * a.x - ea * b.x) / det;
+    out.center = origin + out.edge_x * c.x + out.edge_y * c.y;
+    out.normal = scene.geometric_normal(triangle);
+    return out;
+}
+
+std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of) {
+    double mean = 0.0, weight = 0.0;
+    for (uint32_t r = 0; r < receivers.count(); ++r) {
+        const double area = double(receivers.texel_size[r]) * receivers.texel_size[r];
+        mean += area * luminance_of[r];
+        weight += area;
+    }
+    const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
+    std::vector<uint32_t> out;
+    for (uint32_t r = 0; r < receivers.count(); ++r)
+        if (receivers.full[r] != 0 && receivers.cut[r] == 0 && luminance_of[r] > threshold) out.push_back(r);
+    return out;
+}
+
+Tile pilot_part(const Tile& tile, uint32_t index) {
+    const uint32_t skip = tile.count > kPilotReceivers ? (hash32(index) % (tile.count - kPilotReceivers)) & ~7u : 0;
+    return {tile.first + skip, std::min(kPilotReceivers, tile.count)};
+}
+
+std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays, const ajar_settings& s, bool gathers) {
+    const float floor = dark_level(pilot);
+    std::vector<RayPlan> plan(pilot.size());
+    for (size_t i = 0; i < pilot.size(); ++i) {
+        // The neighbours in tile order pool with the tile itself: eight receivers are few.
+        const PilotResult &before = pilot[i > 0 ? i - 1 : i], &after = pilot[i + 1 < pilot.size() ? i + 1 : i], &here = pilot[i];
+        const auto pooled = [&](float PilotResult::*v) { return std::max(0.25f * (before.*v + after.*v) + 0.5f * here.*v, here.*v); };
+        const float allowed = s.noise_target * (here.level + floor), budget = 0.5f * allowed * allowed + 1e-30f;
+        if (gathers) plan[i].gather = power_of_two(float(pilot_rays.gather) * pooled(&PilotResult::gather_variance) / budget, 64, std::max(s.samples, 64u));
+        plan[i].direct = power_of_two(float(pilot_rays.direct) * pooled(&PilotResult::direct_variance) / budget, std::min(16u, s.direct_samples), std::max(s.direct_samples, 1u));
+    }
+    return plan;
+}
+
+bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds) {
+    const auto cost = [&] {
+        double rays = 0.0;
+        for (size_t i = 0; i < plan.size(); ++i) rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
+        return rays * seconds_per_ray;
+    };
+    bool limited = false;
+    while (cost() > seconds) {
+        bool changed = false;
+        for (RayPlan& p : plan) {
+            if (p.gather > 8) p.gather /= 2, changed = true;
+            if (p.direct > 4) p.direct /= 2, changed = true;
+        }
+        if (!changed) break;
+        limited = true;
+    }
+    return limited;
+}
+
+} // namespace ajar

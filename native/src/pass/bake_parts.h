@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// What the passes with and without elements share.
+
+#include "base/hash.h"
+#include "transport/direct.h"
+
+#include <vector>
+
+namespace ajar {
+
+inline constexpr uint32_t kSourceSamples = 16;  ///< emitter samples per receiver that feed the bounces
+inline constexpr uint32_t kPilotRays = 64;
+inline constexpr uint32_t kPilotReceivers = 8;  ///< of each tile
+inline constexpr uint32_t kCalibrationStep = 4; ///< every n-th tile is estimated twice
+inline constexpr float kFinalShare = 0.5f;      ///< cosine share of the final rays (algorithms.md 1.10)
+
+enum BakeSalt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
+
+/// Ray counts of a tile.
+struct RayPlan {
+    uint32_t gather = 0, direct = 0;
+};
+
+/// What the pilot rays of a tile found, pooled over its receivers.
+struct PilotResult {
+    float level = 0.0f;            ///< mean luminance of the irradiance
+    float gather_variance = 0.0f;  ///< of a receiver's estimate at the pilot's ray counts
+    float direct_variance = 0.0f;
+};
+
+/// Receivers of one block share coarse light if no wall stands between and their normals agree.
+bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b);
+
+/// The parallelogram that a texel covers on its triangle, without radiance.
+BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t receiver);
+
+/// Receivers whose texels stand out by luminance: worth aiming at. Only texels that one triangle
+/// fills can be aimed at exactly.
+std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of);
+
+/// Receivers of a tile that stand for it in the pilot pass.
+Tile pilot_part(const Tile& tile, uint32_t index);
+
+/// Ray counts per tile that reach the noise target by the pilot's pooled variance, within the
+/// counts of settings (algorithms.md 10.3, 10.4).
+std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays, const ajar_settings& settings, bool gathers);
+
+/// Halves ray counts until the rest of the bake fits into seconds; true if it had to.
+bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds);
+
+} // namespace ajar

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pass/bake.h"
+#include "pass/term_merge.h"
+
+namespace ajar {
+
+/// Transport passes of a scene with light sets, doors or toggles. As Baker, but the light of every
+/// receiver is a sparse row with one colour per term; the same rays serve all of them.
+class TermBaker {
+public:
+    TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress);
+    /// Runs all passes. Throws Cancelled.
+    BakeResult run();
+
+private:
+    struct Estimate;
+
+    void direct_source();
+    void bounce(uint32_t index);
+    /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
+    TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const;
+    void take(std::vector<TileRows>& tiles);
+    EmitterSet find_bright_texels();
+    void find_thresholds();
+    std::vector<RayPlan> plan_rays();
+    PilotResult pilot_tile(const Tile& tile, const RayPlan& rays, uint32_t index);
+    Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
+    void final_gather(const std::vector<RayPlan>& plan);
+    void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
+    void join(std::vector<struct FinalTile>& tiles);
+    void calibrate_error(const std::vector<RayPlan>& plan);
+    bool gathers() const;
+    std::vector<uint32_t> sets_of(const Tile& tile) const;
+    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_}; }
+
+    GatherScene s_;
+    ajar_settings settings_;
+    ThreadPool& pool_;
+    Progress& progress_;
+    TermLimits limits_;
+    BakeResult result_;
+    TermTable table_;
+    std::vector<uint32_t> all_sets_;
+    ReceiverRows direct_, current_, source_; ///< irradiance: of the sources, of the bounce in hand, of all bounces
+    TermRows radiance_;                      ///< what the next gather sees
+    std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
+    std::unique_ptr<EmitterSet> final_emitters_;
+};
+
+} // namespace ajar

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "receiver/lightmap.h"
+#include "transport/term_sums.h"
+
+#include <vector>
+
+namespace ajar {
+
+/// Sparse rows of one tile, before its terms have numbers that all tiles share.
+struct TileRows {
+    std::vector<Term> terms;
+    std::vector<uint32_t> count;     ///< [receivers of the tile] entries of each
+    std::vector<TermColor> entries;  ///< term = index into terms
+};
+
+/// Sparse rows over all receivers: irradiance of each term.
+struct ReceiverRows {
+    std::vector<uint64_t> first{0};  ///< [receivers + 1]
+    std::vector<TermColor> entries;
+
+    const TermColor* begin(uint32_t r) const { return entries.data() + first[r]; }
+    const TermColor* end(uint32_t r) const { return entries.data() + first[r + 1]; }
+    Vec3 total(uint32_t r) const;
+    /// Irradiance of one term at a receiver; 0 where the row lacks it.
+    Vec3 of(uint32_t r, uint32_t term) const;
+};
+
+/// The terms of several sums side by side, each once, ascending.
+std::vector<Term> union_of_terms(const std::vector<const TermSums*>& sums);
+
+/// Joins the rows of all tiles; terms that are new get their numbers in table.
+ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table);
+
+/// Entry by entry sum of two sets of rows.
+ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b);
+
+/// Outgoing radiance per page texel of receivers with these irradiances.
+TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers, uint64_t texels);
+
+} // namespace ajar
