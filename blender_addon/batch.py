@@ -44,7 +44,9 @@ def parse(arguments):
     parser.add_argument("--time-limit", type=_positive, metavar="S", help="seconds for the whole bake")
     parser.add_argument("--threads", type=_count_or_none, metavar="N", help="worker threads, 0 for all")
     parser.add_argument("--seed", type=_count_or_none, metavar="N", help="seed of the random numbers")
-    parser.add_argument("--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers")
+    parser.add_argument(
+        "--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers"
+    )
     parser.add_argument("--no-preview", action="store_true", help="save the .blend without the preview")
     parser.add_argument("--layout-only", action="store_true", help="only unwrap and pack, do not bake")
     return parser.parse_args(arguments)
@@ -72,6 +74,7 @@ def _count_or_none(text):
 def load_addon():
     """The add-on in this folder, registered. An installed copy steps aside for this process."""
     import addon_utils
+
     enabled = [name for name, module in sys.modules.items() if getattr(module, "__addon_enabled__", False)]
     for name in enabled:
         if name.split(".")[-1] == NAME:
@@ -90,8 +93,12 @@ def overrides(options):
     """Settings that the command line changes, by engine name."""
     values = {
         "preset": options.preset.upper() if options.preset else None,
-        "samples": options.samples, "noise_target": options.noise, "bounces": options.bounces,
-        "time_limit": options.time_limit, "threads": options.threads, "seed": options.seed,
+        "samples": options.samples,
+        "noise_target": options.noise,
+        "bounces": options.bounces,
+        "time_limit": options.time_limit,
+        "threads": options.threads,
+        "seed": options.seed,
         "texels_per_meter": options.density,
     }
     return {name: value for name, value in values.items() if value is not None}
@@ -105,7 +112,7 @@ class Printer:
 
     def show(self, status):
         """Prints progress and new warnings."""
-        for culprit, text in status.warnings[self._warned:]:
+        for culprit, text in status.warnings[self._warned :]:
             print(f"ajar: warning: {culprit}: {text}" if culprit else f"ajar: warning: {text}", flush=True)
         self._warned = len(status.warnings)
         line = (status.stage, int(100 * status.fraction))
@@ -151,6 +158,7 @@ def save(target, record, package, report):
 def run(options):
     """Bakes the open file; returns the exit code."""
     from ajar import checks, job, settings
+
     if not bpy.data.is_saved:
         raise BatchError("no .blend is open: blender -b FILE.blend -P batch.py -- --out DIR")
     folder = os.path.abspath(options.out)
@@ -164,11 +172,20 @@ def run(options):
         print(f"ajar: warning: {finding}", flush=True)
     keep = options.keep_uvs or context.scene.ajar.keep_uvs
     if options.layout_only:
-        task = job.Job("Lightmap UVs", context, job.layout_steps, keep_existing=keep, overrides=overrides(options))
+        task = job.Job(
+            "Lightmap UVs", context, job.layout_steps, keep_existing=keep, overrides=overrides(options)
+        )
     else:
-        task = job.Job("Bake", context, job.bake_steps, package=os.path.join(folder, settings.PACKAGE),
-                       report=os.path.join(folder, settings.REPORT), keep_existing=keep,
-                       overrides=overrides(options), show=not options.no_preview)
+        task = job.Job(
+            "Bake",
+            context,
+            job.bake_steps,
+            package=os.path.join(folder, settings.PACKAGE),
+            report=os.path.join(folder, settings.REPORT),
+            keep_existing=keep,
+            overrides=overrides(options),
+            show=not options.no_preview,
+        )
     signal.signal(signal.SIGTERM, lambda *_: job.manager.cancel())
     signal.signal(signal.SIGINT, lambda *_: job.manager.cancel())
     return finish(task, target)
@@ -179,6 +196,7 @@ def finish(task, target):
     from ajar import settings
     from ajar.apply import record
     from ajar.job import manager
+
     printer = Printer()
     manager.start(task)
     while manager.step():
@@ -197,7 +215,7 @@ def finish(task, target):
 
 def main():
     """Entry point of the script."""
-    arguments = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     try:
         options = parse(arguments)
         load_addon()
@@ -207,6 +225,7 @@ def main():
         code = FAILED
     except Exception:  # Blender would print it and go on
         import traceback
+
         traceback.print_exc()
         code = FAILED
     sys.stdout.flush()

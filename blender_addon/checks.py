@@ -15,6 +15,7 @@ _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 @dataclass(frozen=True)
 class Finding:
     """One line of the list. Errors stop a bake, warnings do not."""
+
     level: str  # 'ERROR' or 'WARNING'
     culprit: str
     text: str
@@ -70,8 +71,13 @@ def _engine():
 def _output(scene):
     folder = scene.ajar.output_dir
     if folder.startswith("//") and not bpy.data.is_saved:
-        return [_error("", "the file is not saved, so its output folder is unknown",
-                       "Save the file, or set an absolute output folder")]
+        return [
+            _error(
+                "",
+                "the file is not saved, so its output folder is unknown",
+                "Save the file, or set an absolute output folder",
+            )
+        ]
     package, _report = settings.output_paths(scene)
     return check_folder(os.path.dirname(package), scene)
 
@@ -89,8 +95,13 @@ def check_folder(folder, scene):
     try:
         manifest = record.load_json(os.path.join(package, "manifest.json"))
     except ValueError:
-        return [_error(package, "holds files that are not a baked package",
-                       "Choose another output folder, or move them away")]
+        return [
+            _error(
+                package,
+                "holds files that are not a baked package",
+                "Choose another output folder, or move them away",
+            )
+        ]
     del manifest, scene
     return []
 
@@ -98,13 +109,19 @@ def check_folder(folder, scene):
 def _objects(objects):
     receivers = [obj for obj in objects if wants_lightmap(obj)]
     if not receivers:
-        yield _error("", "nothing to bake: no mesh that renders gets a lightmap",
-                     "Add a mesh, make it visible for renders, or set its surface to Lightmap")
+        yield _error(
+            "",
+            "nothing to bake: no mesh that renders gets a lightmap",
+            "Add a mesh, make it visible for renders, or set its surface to Lightmap",
+        )
     for obj in receivers:
         reason = uvs.refusal(obj.data)
         if reason:
-            yield _warning(obj.name, reason.split(":")[0] + " and gets no lightmap",
-                           reason.partition(": ")[2].capitalize() or "Make it local")
+            yield _warning(
+                obj.name,
+                reason.split(":")[0] + " and gets no lightmap",
+                reason.partition(": ")[2].capitalize() or "Make it local",
+            )
         if obj.mode == "EDIT":
             yield _error(obj.name, "is in Edit Mode", "Leave Edit Mode")
     for obj in objects:
@@ -121,8 +138,12 @@ def _lights(scene, objects):
     lamps = [obj for obj in scene.objects if obj.type == "LIGHT" and not _off(obj)]
     if lamps or _sky_lights(scene) or any(_emits(m) for m in _materials(objects)):
         return
-    yield _warning("", "nothing shines: all lights are off, hidden or have no power, no material "
-                   "emits, and the sky is black or off", "Switch on a light, or set the sky to Baked")
+    yield _warning(
+        "",
+        "nothing shines: all lights are off, hidden or have no power, no material "
+        "emits, and the sky is black or off",
+        "Switch on a light, or set the sky to Baked",
+    )
 
 
 def _off(obj):
@@ -187,8 +208,11 @@ def _images(objects):
             path = bpy.path.abspath(image.filepath, library=image.library)
             if image.source == "FILE" and not os.path.isfile(path) and image.name not in missing:
                 missing.add(image.name)
-                yield _warning(image.name, f"image of material {material.name} is missing ({path})",
-                               "Use File > External Data > Find Missing Files")
+                yield _warning(
+                    image.name,
+                    f"image of material {material.name} is missing ({path})",
+                    "Use File > External Data > Find Missing Files",
+                )
 
 
 def _elements(scene):
@@ -196,8 +220,11 @@ def _elements(scene):
     for obj in scene.objects:
         name = obj.ajar.light_set
         if name and name not in sets:
-            yield _warning(obj.name, f"is in light set {name}, which does not exist",
-                           "Assign it to a set of the scene's list")
+            yield _warning(
+                obj.name,
+                f"is in light set {name}, which does not exist",
+                "Assign it to a set of the scene's list",
+            )
         if obj.ajar.open_pose == obj:
             yield _warning(obj.name, "is its own open pose", "Choose the object of the open leaf")
 

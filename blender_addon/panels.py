@@ -42,8 +42,12 @@ def draw_bake(layout, context):
         column = layout.column(align=True)
         column.scale_y = 1.3
         column.operator("ajar.bake", icon="RENDER_STILL")
-    layout.operator("ajar.preview_toggle", icon="HIDE_OFF" if ajar.preview else "HIDE_ON",
-                    text="Preview Baked Light", depress=ajar.preview)
+    layout.operator(
+        "ajar.preview_toggle",
+        icon="HIDE_OFF" if ajar.preview else "HIDE_ON",
+        text="Preview Baked Light",
+        depress=ajar.preview,
+    )
     layout.operator("ajar.check", icon="CHECKMARK")
 
 
@@ -105,6 +109,7 @@ class _Sidebar:
 
 class AJAR_PT_sidebar(_Sidebar, Panel):
     """Daily use: bake, cancel, preview."""
+
     bl_label = "Ajar"
 
     def draw(self, context):
@@ -121,6 +126,7 @@ class AJAR_PT_sidebar(_Sidebar, Panel):
 
 class AJAR_PT_sidebar_last(_Sidebar, Panel):
     """What the last bake reached."""
+
     bl_label = "Last Bake"
     bl_parent_id = "AJAR_PT_sidebar"
 
@@ -131,6 +137,7 @@ class AJAR_PT_sidebar_last(_Sidebar, Panel):
 
 class AJAR_PT_sidebar_sets(_Sidebar, Panel):
     """Light sets of the scene."""
+
     bl_label = "Light Sets"
     bl_parent_id = "AJAR_PT_sidebar"
     bl_options = {"DEFAULT_CLOSED"}
@@ -163,6 +170,7 @@ class _Properties:
 
 class AJAR_PT_render(_Properties, Panel):
     """Bake settings of the scene."""
+
     bl_context = "render"
     bl_label = "Ajar Lightmaps"
 
@@ -180,6 +188,7 @@ class AJAR_PT_render(_Properties, Panel):
 
 class AJAR_PT_render_more(_Properties, Panel):
     """Settings that are seldom changed."""
+
     bl_context = "render"
     bl_label = "Advanced"
     bl_parent_id = "AJAR_PT_render"
@@ -188,8 +197,16 @@ class AJAR_PT_render_more(_Properties, Panel):
         """Draws the panel."""
         layout, ajar = self.split_layout(), context.scene.ajar
         column = layout.column()
-        for name in ("padding", "chart_angle", "keep_uvs", "stitch_seams", "keep_sh", "combinations",
-                     "seed", "threads"):
+        for name in (
+            "padding",
+            "chart_angle",
+            "keep_uvs",
+            "stitch_seams",
+            "keep_sh",
+            "combinations",
+            "seed",
+            "threads",
+        ):
             column.prop(ajar, name)
         layout.operator("ajar.prepare_uvs", icon="GROUP_UVS")
         layout.operator("ajar.clear", icon="TRASH")
@@ -197,6 +214,7 @@ class AJAR_PT_render_more(_Properties, Panel):
 
 class AJAR_PT_object(_Properties, Panel):
     """What a surface is to the bake."""
+
     bl_context = "object"
 
     @classmethod
@@ -223,6 +241,7 @@ class AJAR_PT_object(_Properties, Panel):
 
 class AJAR_PT_light(_Properties, Panel):
     """What is baked of a lamp. Light tabs have the context 'data'."""
+
     bl_context = "data"
 
     @classmethod
@@ -238,6 +257,7 @@ class AJAR_PT_light(_Properties, Panel):
 
 class AJAR_PT_world(_Properties, Panel):
     """Whether the sky is baked."""
+
     bl_context = "world"
 
     @classmethod
@@ -250,8 +270,17 @@ class AJAR_PT_world(_Properties, Panel):
         self.split_layout().prop(world.ajar, "sky_role")
 
 
-CLASSES = (AJAR_UL_light_sets, AJAR_PT_sidebar, AJAR_PT_sidebar_last, AJAR_PT_sidebar_sets, AJAR_PT_render,
-           AJAR_PT_render_more, AJAR_PT_object, AJAR_PT_light, AJAR_PT_world)
+CLASSES = (
+    AJAR_UL_light_sets,
+    AJAR_PT_sidebar,
+    AJAR_PT_sidebar_last,
+    AJAR_PT_sidebar_sets,
+    AJAR_PT_render,
+    AJAR_PT_render_more,
+    AJAR_PT_object,
+    AJAR_PT_light,
+    AJAR_PT_world,
+)
 
 
 def register():

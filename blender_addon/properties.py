@@ -4,8 +4,16 @@
 The names are public: scripts, batch bakes and saved files rely on them.
 """
 import bpy
-from bpy.props import (BoolProperty, CollectionProperty, EnumProperty, FloatProperty,
-                       FloatVectorProperty, IntProperty, PointerProperty, StringProperty)
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 from bpy.types import PropertyGroup
 
 from . import model
@@ -42,13 +50,20 @@ def _properties(rows):
 
 class AJAR_LightSet(PropertyGroup):
     """Lights that share one weight at run time."""
+
     name: StringProperty(name="Name", default="Set")
-    weight: FloatProperty(name="Weight", default=1.0, min=0.0, soft_max=2.0,
-                          description="Strength of this set's light, 1 as baked")
+    weight: FloatProperty(
+        name="Weight",
+        default=1.0,
+        min=0.0,
+        soft_max=2.0,
+        description="Strength of this set's light, 1 as baked",
+    )
 
 
 class AJAR_SlotRecord(PropertyGroup):
     """What stood in a material slot before the preview took it."""
+
     material: PointerProperty(type=bpy.types.Material)
     preview: PointerProperty(type=bpy.types.Material)
     link: StringProperty(default="DATA")
@@ -56,16 +71,20 @@ class AJAR_SlotRecord(PropertyGroup):
 
 class AJAR_DataRecord(PropertyGroup):
     """Object data that got an empty slot for the preview."""
+
     data: PointerProperty(type=bpy.types.ID)
 
 
 class AJAR_SceneSettings(PropertyGroup):
     """Scene.ajar: settings of the bake."""
+
     __annotations__ = {
         **_properties(model.SCENE_FIELDS + _ENGINE_EXTRAS),
         "keep_uvs": BoolProperty(
-            name="Keep Lightmap UVs", default=False,
-            description="Keep the charts of existing AjarLightmap layers and only pack them anew"),
+            name="Keep Lightmap UVs",
+            default=False,
+            description="Keep the charts of existing AjarLightmap layers and only pack them anew",
+        ),
         "light_sets": CollectionProperty(type=AJAR_LightSet),
         "light_set_index": IntProperty(options=_HIDDEN),
         "last_bake": StringProperty(options=_HIDDEN, description="Record of the last bake, JSON"),
@@ -78,11 +97,14 @@ class AJAR_SceneSettings(PropertyGroup):
 
 class AJAR_ObjectSettings(PropertyGroup):
     """Object.ajar: what the object is to the bake, and where its lightmap lies."""
+
     __annotations__ = {
         **_properties(model.OBJECT_FIELDS),
         "open_pose": PointerProperty(
-            name="Open Pose", type=bpy.types.Object,
-            description="Object that stands where this door is when it is open"),
+            name="Open Pose",
+            type=bpy.types.Object,
+            description="Object that stands where this door is when it is open",
+        ),
         "lightmap_page": IntProperty(default=-1, min=-1, options=_HIDDEN),
         "uv_scale": FloatVectorProperty(size=2, default=(1.0, 1.0), options=_HIDDEN),
         "uv_offset": FloatVectorProperty(size=2, default=(0.0, 0.0), options=_HIDDEN),
@@ -95,6 +117,7 @@ class AJAR_ObjectSettings(PropertyGroup):
 
 class AJAR_WorldSettings(PropertyGroup):
     """World.ajar."""
+
     __annotations__ = {
         **_properties(model.WORLD_FIELDS),
         "is_preview": BoolProperty(options=_HIDDEN),
@@ -103,6 +126,7 @@ class AJAR_WorldSettings(PropertyGroup):
 
 class AJAR_MaterialSettings(PropertyGroup):
     """Material.ajar: marks the materials that the preview made."""
+
     is_preview: BoolProperty(options=_HIDDEN)
     source: PointerProperty(type=bpy.types.Material, options=_HIDDEN)
     key: StringProperty(options=_HIDDEN)
@@ -110,19 +134,35 @@ class AJAR_MaterialSettings(PropertyGroup):
 
 class AJAR_ImageSettings(PropertyGroup):
     """Image.ajar: marks the images that a bake made."""
+
     is_page: BoolProperty(options=_HIDDEN)
 
 
 class AJAR_JobState(PropertyGroup):
     """WindowManager.ajar: the running bake as the panels show it; never saved."""
+
     percent: FloatProperty(name="Progress", min=0.0, max=100.0, precision=0, subtype="PERCENTAGE")
 
 
-CLASSES = (AJAR_LightSet, AJAR_SlotRecord, AJAR_DataRecord, AJAR_SceneSettings, AJAR_ObjectSettings,
-           AJAR_WorldSettings, AJAR_MaterialSettings, AJAR_ImageSettings, AJAR_JobState)
-_OWNERS = ((bpy.types.Scene, AJAR_SceneSettings), (bpy.types.Object, AJAR_ObjectSettings),
-           (bpy.types.World, AJAR_WorldSettings), (bpy.types.Material, AJAR_MaterialSettings),
-           (bpy.types.Image, AJAR_ImageSettings), (bpy.types.WindowManager, AJAR_JobState))
+CLASSES = (
+    AJAR_LightSet,
+    AJAR_SlotRecord,
+    AJAR_DataRecord,
+    AJAR_SceneSettings,
+    AJAR_ObjectSettings,
+    AJAR_WorldSettings,
+    AJAR_MaterialSettings,
+    AJAR_ImageSettings,
+    AJAR_JobState,
+)
+_OWNERS = (
+    (bpy.types.Scene, AJAR_SceneSettings),
+    (bpy.types.Object, AJAR_ObjectSettings),
+    (bpy.types.World, AJAR_WorldSettings),
+    (bpy.types.Material, AJAR_MaterialSettings),
+    (bpy.types.Image, AJAR_ImageSettings),
+    (bpy.types.WindowManager, AJAR_JobState),
+)
 
 
 def register():

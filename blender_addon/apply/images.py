@@ -39,8 +39,10 @@ def load_image(path, spaces):
     path = absolute_path(path)
     if not os.path.isfile(path):
         raise ValueError(f"{path} is missing: bake again")
-    image = next((image for image in bpy.data.images
-                  if image.ajar.is_page and absolute_path(image.filepath) == path), None)
+    image = next(
+        (image for image in bpy.data.images if image.ajar.is_page and absolute_path(image.filepath) == path),
+        None,
+    )
     if image is None:
         image = bpy.data.images.load(path)
         image.ajar.is_page = True

@@ -21,8 +21,14 @@ class SceneBuilder:
 
         Raises BakeError with the culprit's name, also for a malformed snapshot.
         """
-        steps = (("pages", self._page), ("textures", self._texture), ("materials", self._material),
-                 ("meshes", self._mesh), ("instances", self._instance), ("lights", self._light))
+        steps = (
+            ("pages", self._page),
+            ("textures", self._texture),
+            ("materials", self._material),
+            ("meshes", self._mesh),
+            ("instances", self._instance),
+            ("lights", self._light),
+        )
         for key, add in steps:
             for item in self.data.get(key, ()):
                 if cancelled():
@@ -57,8 +63,10 @@ class SceneBuilder:
 
     def _page(self, item):
         identifier = c.c_uint32()
-        check(self.library, self.library.ajar_scene_add_page(
-            self.scene, item["width"], item["height"], c.byref(identifier)))
+        check(
+            self.library,
+            self.library.ajar_scene_add_page(self.scene, item["width"], item["height"], c.byref(identifier)),
+        )
 
     def _texture(self, item):
         desc = self._desc("texture", item)
@@ -113,7 +121,8 @@ class SceneBuilder:
         for key, width in (("uv_layers", 2), ("color_layers", 4)):
             layers = item.get(key) or []
             array = (abi.floats * max(1, len(layers)))(
-                *(pointer(layer, "f32", width * corners) for layer in layers))
+                *(pointer(layer, "f32", width * corners) for layer in layers)
+            )
             setattr(desc, key, array)
             setattr(desc, key[:-1] + "_count", len(layers))
         self._add("mesh", desc)
@@ -138,8 +147,16 @@ class SceneBuilder:
         desc.type, desc.role = abi.LIGHT[item["type"]], abi.ROLE[item["role"]]
         desc.transform[:] = item["transform"]
         desc.color[:] = item["color"]
-        for key in ("energy", "radius", "spot_angle", "spot_blend", "sun_angle",
-                    "size_x", "size_y", "spread"):
+        for key in (
+            "energy",
+            "radius",
+            "spot_angle",
+            "spot_blend",
+            "sun_angle",
+            "size_x",
+            "size_y",
+            "spread",
+        ):
             if key in item:
                 setattr(desc, key, item[key])
         desc.casts_shadow = int(item.get("casts_shadow", True))

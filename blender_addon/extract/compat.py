@@ -5,15 +5,20 @@ import bpy
 
 from .. import model
 
-_DEFAULTS = {f.name: f.default for f in
-             model.SCENE_FIELDS + model.OBJECT_FIELDS + model.WORLD_FIELDS}
+_DEFAULTS = {f.name: f.default for f in model.SCENE_FIELDS + model.OBJECT_FIELDS + model.WORLD_FIELDS}
 
 # Columns map a working space of Blender 5 to Rec.709.
 _TO_REC709 = {
-    "Linear Rec.2020": ((1.660491, -0.587641, -0.072850), (-0.124550, 1.132900, -0.008349),
-                        (-0.018151, -0.100579, 1.118730)),
-    "ACEScg": ((1.705051, -0.621792, -0.083259), (-0.130257, 1.140805, -0.010548),
-               (-0.024003, -0.128969, 1.152972)),
+    "Linear Rec.2020": (
+        (1.660491, -0.587641, -0.072850),
+        (-0.124550, 1.132900, -0.008349),
+        (-0.018151, -0.100579, 1.118730),
+    ),
+    "ACEScg": (
+        (1.705051, -0.621792, -0.083259),
+        (-0.130257, 1.140805, -0.010548),
+        (-0.024003, -0.128969, 1.152972),
+    ),
 }
 
 

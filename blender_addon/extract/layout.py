@@ -34,8 +34,14 @@ def write_layout_request(context, directory, settings, keep_existing=False):
         meshes, mapping = [], LayoutMapping()
         for mesh, owners in users:
             record = _mesh_record(mesh, writer, keep_existing)
-            record["users"] = [{"name": o.name, "transform": transform(o.evaluated_get(depsgraph).matrix_world),
-                                "texel_scale": float(ajar(o, "texel_scale"))} for o in owners]
+            record["users"] = [
+                {
+                    "name": o.name,
+                    "transform": transform(o.evaluated_get(depsgraph).matrix_world),
+                    "texel_scale": float(ajar(o, "texel_scale")),
+                }
+                for o in owners
+            ]
             meshes.append(record)
             mapping.meshes.append((mesh.name, [o.name for o in owners]))
         writer.finish({"settings": dict(settings), "meshes": meshes})
@@ -50,7 +56,11 @@ def receivers(view_layer, depsgraph, visible, warnings, keep_existing=False):
     """
     users = {}
     for obj in sorted(view_layer.objects, key=lambda o: o.name_full):
-        if obj.name_full not in visible or obj.type not in objects.GEOMETRY or not objects.wants_lightmap(obj):
+        if (
+            obj.name_full not in visible
+            or obj.type not in objects.GEOMETRY
+            or not objects.wants_lightmap(obj)
+        ):
             continue
         why = objects.obstacle(obj)
         if why and not (obj.type == "MESH" and len(obj.data.polygons) == 0):
@@ -68,15 +78,24 @@ def _mesh_record(mesh, writer, keep_existing):
     """The request's dict of a base mesh, without users."""
     polygons, corners = len(mesh.polygons), len(mesh.loops)
     layer = mesh.uv_layers.get(model.LIGHTMAP_UV) if keep_existing else None
-    return {
-        "name": mesh.name, "vertex_count": len(mesh.vertices),
-        "positions": writer.add(_get(mesh.vertices, "co", 3, np.float32), "f32"),
-        "corner_vertex": writer.add(_get(mesh.loops, "vertex_index", 1, np.int32), "u32"),
-        "polygon_start": writer.add(_get(mesh.polygons, "loop_start", 1, np.int32), "u32"),
-        "polygon_size": writer.add(_get(mesh.polygons, "loop_total", 1, np.int32), "u32"),
-        "corner_edge_sharp": writer.add(_cut_edges(mesh)[_get(mesh.loops, "edge_index", 1, np.int32)], "u8"),
-        "corner_uv": writer.add(_get(layer.data, "uv", 2, np.float32), "f32") if layer and corners else None,
-    } if polygons else {}
+    return (
+        {
+            "name": mesh.name,
+            "vertex_count": len(mesh.vertices),
+            "positions": writer.add(_get(mesh.vertices, "co", 3, np.float32), "f32"),
+            "corner_vertex": writer.add(_get(mesh.loops, "vertex_index", 1, np.int32), "u32"),
+            "polygon_start": writer.add(_get(mesh.polygons, "loop_start", 1, np.int32), "u32"),
+            "polygon_size": writer.add(_get(mesh.polygons, "loop_total", 1, np.int32), "u32"),
+            "corner_edge_sharp": writer.add(
+                _cut_edges(mesh)[_get(mesh.loops, "edge_index", 1, np.int32)], "u8"
+            ),
+            "corner_uv": writer.add(_get(layer.data, "uv", 2, np.float32), "f32")
+            if layer and corners
+            else None,
+        }
+        if polygons
+        else {}
+    )
 
 
 def _cut_edges(mesh):

@@ -20,8 +20,14 @@ def extract_light(evaluated, matrix, name, engine, store, warnings):
         return None
     light = evaluated.data
     color, energy = _strength(light, lambda text: warnings.add(name, text), store)
-    record = {"name": name, "role": role, "transform": transform(matrix), "color": list(color),
-              "energy": energy, "casts_shadow": _casts_shadow(light, engine)}
+    record = {
+        "name": name,
+        "role": role,
+        "transform": transform(matrix),
+        "color": list(color),
+        "energy": energy,
+        "casts_shadow": _casts_shadow(light, engine),
+    }
     record.update(_shape(light))
     if getattr(light, "normalize", True) is False:
         record["energy"] *= _emitting_area(record)
@@ -32,13 +38,21 @@ def _shape(light):
     if light.type == "POINT":
         return {"type": "point", "radius": light.shadow_soft_size}
     if light.type == "SPOT":
-        return {"type": "spot", "radius": light.shadow_soft_size,
-                "spot_angle": light.spot_size, "spot_blend": light.spot_blend}
+        return {
+            "type": "spot",
+            "radius": light.shadow_soft_size,
+            "spot_angle": light.spot_size,
+            "spot_blend": light.spot_blend,
+        }
     if light.type == "SUN":
         return {"type": "sun", "sun_angle": light.angle}
     square = light.shape in {"SQUARE", "DISK"}
-    return {"type": _SHAPES[light.shape], "size_x": light.size,
-            "size_y": light.size if square else light.size_y, "spread": getattr(light, "spread", pi)}
+    return {
+        "type": _SHAPES[light.shape],
+        "size_x": light.size,
+        "size_y": light.size if square else light.size_y,
+        "spread": getattr(light, "spread", pi),
+    }
 
 
 def _emitting_area(record):
@@ -64,9 +78,13 @@ def _strength(light, warn, store):
     """(Rec.709 colour, energy in W or W/m^2), with exposure, temperature and light nodes."""
     color, energy = rec709(light.color), float(light.energy)
     if has(light, "exposure"):
-        energy *= 2.0 ** light.exposure
+        energy *= 2.0**light.exposure
     if getattr(light, "use_temperature", False):
-        tint = rec709(light.temperature_color) if has(light, "temperature_color") else blackbody(light.temperature)
+        tint = (
+            rec709(light.temperature_color)
+            if has(light, "temperature_color")
+            else blackbody(light.temperature)
+        )
         color = tuple(a * b for a, b in zip(color, tint))
     if light.use_nodes and light.node_tree is not None:
         factor = _nodes(light, warn, store)
@@ -95,11 +113,15 @@ def _emission_strength(source, warn, store):
     origin = resolve(source.scope, socket)
     falloff = origin.node is not None and origin.node.bl_idname == "ShaderNodeLightFalloff"
     if not falloff:
-        return _constant(source, "Strength", lambda ev: ev.scalar(source.scope, source.node, "Strength"), warn, store)
+        return _constant(
+            source, "Strength", lambda ev: ev.scalar(source.scope, source.node, "Strength"), warn, store
+        )
     smooth = find_input(origin.node, "Smooth")
     if origin.socket.name != "Quadratic" or smooth.is_linked or smooth.default_value != 0.0:
         warn("light falloff is taken as quadratic and not smoothed")
-    return _constant(source, "Strength", lambda ev: ev.scalar(origin.scope, origin.node, "Strength"), warn, store)
+    return _constant(
+        source, "Strength", lambda ev: ev.scalar(origin.scope, origin.node, "Strength"), warn, store
+    )
 
 
 def _constant(source, what, evaluate, warn, store):

@@ -69,7 +69,9 @@ class Placed:
         """
         if self.depsgraph is not None and not split:
             evaluated = self.source.evaluated_get(self.depsgraph)
-            mesh = bpy.data.meshes.new_from_object(evaluated, preserve_all_data_layers=True, depsgraph=self.depsgraph)
+            mesh = bpy.data.meshes.new_from_object(
+                evaluated, preserve_all_data_layers=True, depsgraph=self.depsgraph
+            )
             if len(mesh.loops) > self.mesh.corner_loop.max():
                 return mesh, self.mesh.corner_loop
             bpy.data.meshes.remove(mesh)
@@ -96,8 +98,12 @@ def write_snapshot(context, directory, engine_settings, layout=None):
         data = extraction.run()
         data.update(settings=dict(engine_settings), warnings=warnings.as_json())
         writer.finish(data)
-    return ExtractResult(list(warnings.items), [(i["name"], i["surface"]) for i in data["instances"]],
-                         sum(m["triangle_count"] for m in data["meshes"]), len(data["lights"]))
+    return ExtractResult(
+        list(warnings.items),
+        [(i["name"], i["surface"]) for i in data["instances"]],
+        sum(m["triangle_count"] for m in data["meshes"]),
+        len(data["lights"]),
+    )
 
 
 class _Extraction:
@@ -121,16 +127,25 @@ class _Extraction:
         # Not while iterating: baking materials and sky may make Blender rebuild its graph.
         instances = [self._instance_record(p) for p in self.placed]
         sky = extract_sky(self.scene, self.store, self.warnings)
-        return {"name": _scene_name(self.scene), "generator": GENERATOR, "pages": self.pages,
-                "textures": self.store.items, "materials": self.materials.items,
-                "meshes": self.mesh_records, "instances": instances, "lights": self.lights, "sky": sky}
+        return {
+            "name": _scene_name(self.scene),
+            "generator": GENERATOR,
+            "pages": self.pages,
+            "textures": self.store.items,
+            "materials": self.materials.items,
+            "meshes": self.mesh_records,
+            "instances": instances,
+            "lights": self.lights,
+            "sky": sky,
+        }
 
     def _instance(self, instance):
         obj = instance.object
         if obj.type == "LIGHT":
             name = self._name(instance)
-            light = extract_light(obj, instance.matrix_world, name, self.scene.render.engine,
-                                  self.store, self.warnings)
+            light = extract_light(
+                obj, instance.matrix_world, name, self.scene.render.engine, self.store, self.warnings
+            )
             if light is not None:
                 self.lights.append(light)
         elif obj.type in objects.GEOMETRY and ajar(obj, "surface") != "IGNORE":
@@ -152,8 +167,15 @@ class _Extraction:
             self.warnings.add(obj.original.name, "has no faces: skipped")
             return
         mesh = self._meshes[mesh_id]
-        placed = Placed(name, obj.original, mesh, mesh_id, instance.matrix_world.copy(),
-                        _slots(obj, mesh), add_layer=self._add_layer)
+        placed = Placed(
+            name,
+            obj.original,
+            mesh,
+            mesh_id,
+            instance.matrix_world.copy(),
+            _slots(obj, mesh),
+            add_layer=self._add_layer,
+        )
         if not instance.is_instance:
             placed.depsgraph = self.depsgraph
         self._choose_surface(instance, placed)
@@ -165,7 +187,11 @@ class _Extraction:
             return
         why = self._obstacle(instance, placed)
         if why:
-            culprit = obj.name if not instance.is_instance or instance.parent is None else instance.parent.original.name
+            culprit = (
+                obj.name
+                if not instance.is_instance or instance.parent is None
+                else instance.parent.original.name
+            )
             self.warnings.add(culprit, why)
             return
         placed.surface, placed.place = "lightmap", self.places[obj.name]
@@ -215,15 +241,26 @@ class _Extraction:
 
     def _instance_record(self, placed):
         obj, mesh = placed.source, placed.mesh
-        record = {"name": placed.name, "mesh": placed.mesh_id, "transform": transform(placed.matrix),
-                  "materials": [self.materials.material_id(m, placed) for m in placed.materials],
-                  "surface": placed.surface,
-                  "visibility": [name for name, flag in (("gather", obj.visible_diffuse),
-                                                         ("shadow", obj.visible_shadow)) if flag]}
+        record = {
+            "name": placed.name,
+            "mesh": placed.mesh_id,
+            "transform": transform(placed.matrix),
+            "materials": [self.materials.material_id(m, placed) for m in placed.materials],
+            "surface": placed.surface,
+            "visibility": [
+                name
+                for name, flag in (("gather", obj.visible_diffuse), ("shadow", obj.visible_shadow))
+                if flag
+            ],
+        }
         if placed.surface == "lightmap":
             place = placed.place
-            record.update(lightmap_layer=mesh.uv_index(model.LIGHTMAP_UV), page=place["page"],
-                          uv_scale=list(place["scale"]), uv_offset=list(place["offset"]))
+            record.update(
+                lightmap_layer=mesh.uv_index(model.LIGHTMAP_UV),
+                page=place["page"],
+                uv_scale=list(place["scale"]),
+                uv_offset=list(place["offset"]),
+            )
         return record
 
 

@@ -22,6 +22,7 @@ def _needs_set(cls, context):
 
 class AJAR_OT_light_set_add(Operator):
     """Add a light set: lights that share one weight at run time"""
+
     bl_idname = "ajar.light_set_add"
     bl_label = "Add Light Set"
     bl_options = _UNDO
@@ -42,6 +43,7 @@ class AJAR_OT_light_set_add(Operator):
 
 class AJAR_OT_light_set_remove(Operator):
     """Remove the active light set; its lights belong to no set afterwards"""
+
     bl_idname = "ajar.light_set_remove"
     bl_label = "Remove Light Set"
     bl_options = _UNDO
@@ -65,6 +67,7 @@ class AJAR_OT_light_set_remove(Operator):
 
 class AJAR_OT_light_set_assign(Operator):
     """Put the selected lights and emissive meshes into the active light set"""
+
     bl_idname = "ajar.light_set_assign"
     bl_label = "Assign to Light Set"
     bl_options = _UNDO
@@ -95,6 +98,7 @@ class AJAR_OT_light_set_assign(Operator):
 
 class AJAR_OT_door_mark(Operator):
     """Mark the active object as a door. A second selected object becomes its open pose"""
+
     bl_idname = "ajar.door_mark"
     bl_label = "Mark as Door"
     bl_options = _UNDO

@@ -14,12 +14,41 @@ ADDON = load_addon()
 from ajar import checks, settings  # noqa: E402
 from ajar.apply import uvs  # noqa: E402
 
-SCENE = {"texels_per_meter", "atlas_size", "preset", "bounces", "noise_target", "time_limit", "seed",
-         "output_dir", "light_sets", "combinations"}
-OBJECT = {"light_role", "light_set", "surface", "texel_scale", "movable", "open_pose",
-          "bounce_when_closed", "openness", "presence"}
-OPERATORS = ("bake", "cancel", "check", "preview_toggle", "prepare_uvs", "light_set_add",
-             "light_set_remove", "light_set_assign", "door_mark", "clear")
+SCENE = {
+    "texels_per_meter",
+    "atlas_size",
+    "preset",
+    "bounces",
+    "noise_target",
+    "time_limit",
+    "seed",
+    "output_dir",
+    "light_sets",
+    "combinations",
+}
+OBJECT = {
+    "light_role",
+    "light_set",
+    "surface",
+    "texel_scale",
+    "movable",
+    "open_pose",
+    "bounce_when_closed",
+    "openness",
+    "presence",
+}
+OPERATORS = (
+    "bake",
+    "cancel",
+    "check",
+    "preview_toggle",
+    "prepare_uvs",
+    "light_set_add",
+    "light_set_remove",
+    "light_set_assign",
+    "door_mark",
+    "clear",
+)
 ENUMS = {
     ("scene", "preset"): ["DRAFT", "PREVIEW", "PRODUCTION", "REFERENCE"],
     ("scene", "combinations"): ["NONE", "AUTO", "ALL"],
@@ -172,7 +201,14 @@ def check_registration():
         ADDON.register()
 
 
-for check in (check_names, check_sets_and_doors, check_checks, check_uv_layers, check_settings,
-              check_polls, check_registration):
+for check in (
+    check_names,
+    check_sets_and_doors,
+    check_checks,
+    check_uv_layers,
+    check_settings,
+    check_polls,
+    check_registration,
+):
     check()
     print(f"bl_addon: {check.__name__} ok")

@@ -9,8 +9,14 @@ import pytest
 
 from blender_addon.bridge import abi
 
-SCALARS = {"uint32_t": ctypes.c_uint32, "uint64_t": ctypes.c_uint64, "float": ctypes.c_float,
-           "double": ctypes.c_double, "ajar_result": ctypes.c_int32, "int32_t": ctypes.c_int32}
+SCALARS = {
+    "uint32_t": ctypes.c_uint32,
+    "uint64_t": ctypes.c_uint64,
+    "float": ctypes.c_float,
+    "double": ctypes.c_double,
+    "ajar_result": ctypes.c_int32,
+    "int32_t": ctypes.c_int32,
+}
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +67,19 @@ def test_sizes_agree_with_the_compiler(root, tmp_path):
     compiler = shutil.which("cc") or shutil.which("gcc")
     assert compiler, "a C compiler is needed"
     lines = [f'printf("{n} %zu\\n", sizeof({n}));' for n in abi.STRUCTS]
-    lines += [f'printf("{n}.{f[0]} %zu\\n", offsetof({n}, {f[0]}));'
-              for n, s in abi.STRUCTS.items() for f in s._fields_]
+    lines += [
+        f'printf("{n}.{f[0]} %zu\\n", offsetof({n}, {f[0]}));'
+        for n, s in abi.STRUCTS.items()
+        for f in s._fields_
+    ]
     source = tmp_path / "sizes.c"
-    source.write_text("#include <ajar/ajar.h>\n#include <stdio.h>\nint main(void) {" + "\n".join(lines) + "return 0; }")
+    source.write_text(
+        "#include <ajar/ajar.h>\n#include <stdio.h>\nint main(void) {" + "\n".join(lines) + "return 0; }"
+    )
     program = tmp_path / "sizes"
-    subprocess.run([compiler, "-std=c99", "-I", root / "native" / "include", source, "-o", program], check=True)
+    subprocess.run(
+        [compiler, "-std=c99", "-I", root / "native" / "include", source, "-o", program], check=True
+    )
     output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     for name, size in (line.split() for line in output.splitlines()):
         struct, _, field = name.partition(".")
@@ -92,9 +105,20 @@ def test_numbers(header):
     assert int(re.search(r"AJAR_MAX_CLOSURES (\d+)u", header)[1]) == abi.MAX_CLOSURES
     for name in (n for n in vars(abi) if n.startswith("ERROR_")):
         assert getattr(abi, name) == values["AJAR_" + name], name
-    assert (abi.OK, abi.CANCELLED, abi.RUNNING) == tuple(values[f"AJAR_{n}"] for n in ("OK", "CANCELLED", "RUNNING"))
-    words = {"TEXEL": abi.TEXEL, "COLOR": abi.COLOR, "EXTEND": abi.EXTEND, "CHANNEL": abi.CHANNEL,
-             "CLOSURE": abi.CLOSURE, "SURFACE": abi.SURFACE, "VISIBLE": abi.VISIBLE, "ROLE": abi.ROLE, "SKY": abi.SKY}
+    assert (abi.OK, abi.CANCELLED, abi.RUNNING) == tuple(
+        values[f"AJAR_{n}"] for n in ("OK", "CANCELLED", "RUNNING")
+    )
+    words = {
+        "TEXEL": abi.TEXEL,
+        "COLOR": abi.COLOR,
+        "EXTEND": abi.EXTEND,
+        "CHANNEL": abi.CHANNEL,
+        "CLOSURE": abi.CLOSURE,
+        "SURFACE": abi.SURFACE,
+        "VISIBLE": abi.VISIBLE,
+        "ROLE": abi.ROLE,
+        "SKY": abi.SKY,
+    }
     for prefix, table in words.items():
         for word, number in table.items():
             assert values[f"AJAR_{prefix}_{word.upper()}"] == number

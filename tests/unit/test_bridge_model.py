@@ -12,14 +12,21 @@ def test_tables_cover_the_structs():
 
 
 def test_defaults_are_in_range():
-    tables = model.ENGINE_FIELDS, model.LAYOUT_FIELDS, model.SCENE_FIELDS, model.OBJECT_FIELDS, model.WORLD_FIELDS
+    tables = (
+        model.ENGINE_FIELDS,
+        model.LAYOUT_FIELDS,
+        model.SCENE_FIELDS,
+        model.OBJECT_FIELDS,
+        model.WORLD_FIELDS,
+    )
     for field in sum(tables, ()):
         assert model.check_value(field, field.default) == field.default
         assert field.description and field.label, field.name
 
 
-@pytest.mark.parametrize("preset, noise", [
-    ("DRAFT", 0.2), ("PREVIEW", 0.05), ("PRODUCTION", 0.015), ("REFERENCE", 0.005)])
+@pytest.mark.parametrize(
+    "preset, noise", [("DRAFT", 0.2), ("PREVIEW", 0.05), ("PRODUCTION", 0.015), ("REFERENCE", 0.005)]
+)
 def test_presets(preset, noise):
     settings = model.engine_settings(preset, bounces=3, seed=None)
     assert settings["noise_target"] == noise and settings["bounces"] == 3 and settings["seed"] == 0
@@ -32,7 +39,9 @@ def test_samples_alone_turn_the_target_off():
     assert model.engine_settings("PREVIEW", samples=100, noise_target=0.1)["noise_target"] == 0.1
 
 
-@pytest.mark.parametrize("change", [{"bounces": -1}, {"noise_target": 2.0}, {"typo": 1}, {"time_limit": float("nan")}])
+@pytest.mark.parametrize(
+    "change", [{"bounces": -1}, {"noise_target": 2.0}, {"typo": 1}, {"time_limit": float("nan")}]
+)
 def test_bad_settings(change):
     with pytest.raises(model.SettingsError, match=next(iter(change))):
         model.engine_settings("PREVIEW", **change)

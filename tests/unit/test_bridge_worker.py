@@ -22,23 +22,62 @@ SQUARE_UV = [0, 0, 1, 0, 1, 1, 0, 1]
 def write_snapshot(folder, size=16, **settings):
     """A unit square under a constant sky of radiance 1, lightmapped to one page."""
     with Writer(folder) as writer:
-        uv = [v for c in CORNERS for v in SQUARE_UV[2 * c:2 * c + 2]]
-        mesh = {"name": "Square", "vertex_count": 4, "triangle_count": 2,
-                "positions": writer.add_bytes(array("f", SQUARE), "f32"),
-                "corner_vertex": writer.add_bytes(array("I", CORNERS), "u32"), "corner_normals": None,
-                "triangle_slot": None, "uv_layers": [writer.add_bytes(array("f", uv), "f32")],
-                "uv_layer_names": ["AjarLightmap"], "color_layers": []}
-        image = {"name": "Grey", "width": 2, "height": 2, "texel": "u8", "color": "linear", "extend": "repeat",
-                 "nearest": False, "texels": writer.add_bytes(array("B", [128] * 16), "u8")}
+        uv = [v for c in CORNERS for v in SQUARE_UV[2 * c : 2 * c + 2]]
+        mesh = {
+            "name": "Square",
+            "vertex_count": 4,
+            "triangle_count": 2,
+            "positions": writer.add_bytes(array("f", SQUARE), "f32"),
+            "corner_vertex": writer.add_bytes(array("I", CORNERS), "u32"),
+            "corner_normals": None,
+            "triangle_slot": None,
+            "uv_layers": [writer.add_bytes(array("f", uv), "f32")],
+            "uv_layer_names": ["AjarLightmap"],
+            "color_layers": [],
+        }
+        image = {
+            "name": "Grey",
+            "width": 2,
+            "height": 2,
+            "texel": "u8",
+            "color": "linear",
+            "extend": "repeat",
+            "nearest": False,
+            "texels": writer.add_bytes(array("B", [128] * 16), "u8"),
+        }
         material = {"name": "Matte", "closures": [{"type": "diffuse", "color": {"texture": 0}}]}
-        instance = {"name": "Square", "mesh": 0, "transform": IDENTITY, "materials": [0], "surface": "lightmap",
-                    "visibility": ["gather", "shadow"], "lightmap_layer": 0, "page": 0}
-        light = {"name": "Lamp", "type": "point", "role": "static", "transform": IDENTITY[:11] + [2.0],
-                 "color": [1, 1, 1], "energy": 10.0, "radius": 0.1, "casts_shadow": True}
-        data = {"name": "test", "settings": {"bounces": 1, "noise_target": 0.0, "samples": 64, **settings},
-                "pages": [{"width": size, "height": size}], "textures": [image], "materials": [material],
-                "meshes": [mesh], "instances": [instance], "lights": [light],
-                "sky": {"type": "constant", "color": [1, 1, 1]}, "warnings": [{"culprit": "X", "text": "from before"}]}
+        instance = {
+            "name": "Square",
+            "mesh": 0,
+            "transform": IDENTITY,
+            "materials": [0],
+            "surface": "lightmap",
+            "visibility": ["gather", "shadow"],
+            "lightmap_layer": 0,
+            "page": 0,
+        }
+        light = {
+            "name": "Lamp",
+            "type": "point",
+            "role": "static",
+            "transform": IDENTITY[:11] + [2.0],
+            "color": [1, 1, 1],
+            "energy": 10.0,
+            "radius": 0.1,
+            "casts_shadow": True,
+        }
+        data = {
+            "name": "test",
+            "settings": {"bounces": 1, "noise_target": 0.0, "samples": 64, **settings},
+            "pages": [{"width": size, "height": size}],
+            "textures": [image],
+            "materials": [material],
+            "meshes": [mesh],
+            "instances": [instance],
+            "lights": [light],
+            "sky": {"type": "constant", "color": [1, 1, 1]},
+            "warnings": [{"culprit": "X", "text": "from before"}],
+        }
         writer.finish(data)
     return folder
 
@@ -59,8 +98,13 @@ def run(client, seconds=120):
 
 
 def bake(tmp_path, library, folder):
-    return WorkerClient.bake(folder, tmp_path / "package", tmp_path / "report.json", python=sys.executable,
-                             environment={"AJAR_LIBRARY": str(library)})
+    return WorkerClient.bake(
+        folder,
+        tmp_path / "package",
+        tmp_path / "report.json",
+        python=sys.executable,
+        environment={"AJAR_LIBRARY": str(library)},
+    )
 
 
 def test_bake(tmp_path, library):
@@ -107,13 +151,16 @@ def test_other_ways_to_cancel(tmp_path, library, how):
     assert run(client)[-1]["event"] == "cancelled"
 
 
-@pytest.mark.parametrize("edit, culprit", [
-    (lambda d: d["instances"][0].update(mesh=7), "Square"),
-    (lambda d: d["meshes"][0]["positions"].update(count=11), "Square"),
-    (lambda d: d["materials"][0]["closures"][0].update(type="velvet"), "Matte"),
-    (lambda d: d["textures"][0].update(width=3), "Grey"),
-    (lambda d: d["settings"].update(typo=1), "settings"),
-])
+@pytest.mark.parametrize(
+    "edit, culprit",
+    [
+        (lambda d: d["instances"][0].update(mesh=7), "Square"),
+        (lambda d: d["meshes"][0]["positions"].update(count=11), "Square"),
+        (lambda d: d["materials"][0]["closures"][0].update(type="velvet"), "Matte"),
+        (lambda d: d["textures"][0].update(width=3), "Grey"),
+        (lambda d: d["settings"].update(typo=1), "settings"),
+    ],
+)
 def test_errors_name_the_culprit(tmp_path, library, edit, culprit):
     folder = write_snapshot(tmp_path / "shot")
     change(folder, edit)
@@ -131,15 +178,24 @@ def test_missing_snapshot_and_library(tmp_path, library):
 
 def test_layout(tmp_path, library):
     with Writer(tmp_path, "layout") as writer:
-        mesh = {"name": "Square", "vertex_count": 4, "positions": writer.add_bytes(array("f", SQUARE), "f32"),
-                "corner_vertex": writer.add_bytes(array("I", [0, 1, 2, 3]), "u32"),
-                "polygon_start": writer.add_bytes(array("I", [0]), "u32"),
-                "polygon_size": writer.add_bytes(array("I", [4]), "u32"),
-                "corner_edge_sharp": None, "corner_uv": None,
-                "users": [{"name": "A", "transform": IDENTITY},
-                          {"name": "B", "transform": IDENTITY, "texel_scale": 2.0}]}
+        mesh = {
+            "name": "Square",
+            "vertex_count": 4,
+            "positions": writer.add_bytes(array("f", SQUARE), "f32"),
+            "corner_vertex": writer.add_bytes(array("I", [0, 1, 2, 3]), "u32"),
+            "polygon_start": writer.add_bytes(array("I", [0]), "u32"),
+            "polygon_size": writer.add_bytes(array("I", [4]), "u32"),
+            "corner_edge_sharp": None,
+            "corner_uv": None,
+            "users": [
+                {"name": "A", "transform": IDENTITY},
+                {"name": "B", "transform": IDENTITY, "texel_scale": 2.0},
+            ],
+        }
         writer.finish({"settings": {"texels_per_meter": 16.0, "atlas_size": 256}, "meshes": [mesh]})
-    events = run(WorkerClient.layout(tmp_path, python=sys.executable, environment={"AJAR_LIBRARY": str(library)}))
+    events = run(
+        WorkerClient.layout(tmp_path, python=sys.executable, environment={"AJAR_LIBRARY": str(library)})
+    )
     assert events[-1]["event"] == "done", events[-1]
     with Reader(tmp_path, "layout_result") as reader:
         (answer,) = reader.data["meshes"]
@@ -150,7 +206,9 @@ def test_layout(tmp_path, library):
 
 
 def test_worker_uses_only_the_standard_library():
-    code = ("import sys, runpy; sys.argv = ['worker.py', '-h']\n"
-            f"try: runpy.run_path({str(WORKER)!r}, run_name='__main__')\nexcept SystemExit: pass\n"
-            "bad = {m.split('.')[0] for m in sys.modules} & {'numpy', 'bpy', 'blender_addon'}\nassert not bad, bad")
+    code = (
+        "import sys, runpy; sys.argv = ['worker.py', '-h']\n"
+        f"try: runpy.run_path({str(WORKER)!r}, run_name='__main__')\nexcept SystemExit: pass\n"
+        "bad = {m.split('.')[0] for m in sys.modules} & {'numpy', 'bpy', 'blender_addon'}\nassert not bad, bad"
+    )
     subprocess.run([sys.executable, "-S", "-s", "-E", "-B", "-c", code], check=True, capture_output=True)
