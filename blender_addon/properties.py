@@ -16,11 +16,11 @@ from bpy.props import (
 )
 from bpy.types import PropertyGroup
 
-from . import model
+from . import fields
 
 _HIDDEN = {"HIDDEN"}
 _NUMBERS = {"int": IntProperty, "float": FloatProperty}
-_ENGINE_EXTRAS = tuple(field for field in model.ENGINE_FIELDS if field.name in ("stitch_seams", "keep_sh"))
+_ENGINE_EXTRAS = tuple(field for field in fields.ENGINE_FIELDS if field.name in ("stitch_seams", "keep_sh"))
 
 
 def _property(field):
@@ -59,6 +59,20 @@ class AJAR_LightSet(PropertyGroup):
         soft_max=2.0,
         description="Strength of this set's light, 1 as baked",
     )
+    color: FloatVectorProperty(
+        name="Color",
+        subtype="COLOR",
+        size=3,
+        default=(1.0, 1.0, 1.0),
+        min=0.0,
+        soft_max=1.0,
+        description="Tint of this set's light at run time, white as baked",
+    )
+    combine: BoolProperty(
+        name="Combine",
+        default=True,
+        description="Bake the combinations of this set with doors and toggles too, where they overlap",
+    )
 
 
 class AJAR_SlotRecord(PropertyGroup):
@@ -79,7 +93,7 @@ class AJAR_SceneSettings(PropertyGroup):
     """Scene.ajar: settings of the bake."""
 
     __annotations__ = {
-        **_properties(model.SCENE_FIELDS + _ENGINE_EXTRAS),
+        **_properties(fields.SCENE_FIELDS + _ENGINE_EXTRAS),
         "keep_uvs": BoolProperty(
             name="Keep Lightmap UVs",
             default=False,
@@ -99,7 +113,7 @@ class AJAR_ObjectSettings(PropertyGroup):
     """Object.ajar: what the object is to the bake, and where its lightmap lies."""
 
     __annotations__ = {
-        **_properties(model.OBJECT_FIELDS),
+        **_properties(fields.OBJECT_FIELDS),
         "open_pose": PointerProperty(
             name="Open Pose",
             type=bpy.types.Object,
@@ -115,11 +129,24 @@ class AJAR_ObjectSettings(PropertyGroup):
     }
 
 
+class AJAR_CollectionSettings(PropertyGroup):
+    """Collection.ajar: tags that the members inherit. A movable collection is one element."""
+
+    __annotations__ = {
+        **_properties(fields.COLLECTION_FIELDS),
+        "open_pose": PointerProperty(
+            name="Open Pose",
+            type=bpy.types.Object,
+            description="Object that stands where this door is when it is open, with its children",
+        ),
+    }
+
+
 class AJAR_WorldSettings(PropertyGroup):
     """World.ajar."""
 
     __annotations__ = {
-        **_properties(model.WORLD_FIELDS),
+        **_properties(fields.WORLD_FIELDS),
         "is_preview": BoolProperty(options=_HIDDEN),
     }
 
@@ -150,6 +177,7 @@ CLASSES = (
     AJAR_DataRecord,
     AJAR_SceneSettings,
     AJAR_ObjectSettings,
+    AJAR_CollectionSettings,
     AJAR_WorldSettings,
     AJAR_MaterialSettings,
     AJAR_ImageSettings,
@@ -158,6 +186,7 @@ CLASSES = (
 _OWNERS = (
     (bpy.types.Scene, AJAR_SceneSettings),
     (bpy.types.Object, AJAR_ObjectSettings),
+    (bpy.types.Collection, AJAR_CollectionSettings),
     (bpy.types.World, AJAR_WorldSettings),
     (bpy.types.Material, AJAR_MaterialSettings),
     (bpy.types.Image, AJAR_ImageSettings),

@@ -2,12 +2,21 @@
 """Turns the scene's settings, with overrides of a batch, into what the engine takes."""
 import os
 
-from . import model
+from . import fields, model
 from .apply.record import absolute_path
 
 PACKAGE = "package"
 REPORT = "report.json"
-_FROM_SCENE = ("bounces", "time_limit", "seed", "threads", "stitch_seams", "keep_sh")
+_FROM_SCENE = (
+    "bounces",
+    "time_limit",
+    "seed",
+    "threads",
+    "stitch_seams",
+    "keep_sh",
+    "combinations",
+    "term_threshold",
+)
 
 
 def engine_settings(scene, overrides=None):
@@ -24,7 +33,7 @@ def engine_settings(scene, overrides=None):
 
 def layout_settings(scene, overrides=None):
     """Layout settings as a dict."""
-    values = {field.name: getattr(scene.ajar, field.name) for field in model.LAYOUT_FIELDS}
+    values = {field.name: getattr(scene.ajar, field.name) for field in fields.LAYOUT_FIELDS}
     density = _given(overrides).get("texels_per_meter")
     if density is not None:
         values["texels_per_meter"] = density

@@ -6,6 +6,7 @@ import ctypes as c
 ABI_VERSION = 1
 NONE = 0xFFFFFFFF
 MAX_CLOSURES = 8
+MAX_TERM_ELEMENTS = 4
 
 OK, CANCELLED, RUNNING = 0, 1, 2
 ERROR_ARGUMENT, ERROR_STRUCT_SIZE, ERROR_HANDLE, ERROR_STATE = -1, -2, -3, -4
@@ -94,7 +95,7 @@ class Settings(c.Structure):
 
 
 class TermInfo(c.Structure):
-    _fields_ = [("struct_size", u32), ("element_count", u32), ("elements", u32 * 4),
+    _fields_ = [("struct_size", u32), ("element_count", u32), ("elements", u32 * MAX_TERM_ELEMENTS),
                 ("is_signed", u32), ("texel_count", u64), ("relative_error", f32),
                 ("discarded", f32)]
 

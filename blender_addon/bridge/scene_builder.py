@@ -26,6 +26,7 @@ class SceneBuilder:
             ("textures", self._texture),
             ("materials", self._material),
             ("meshes", self._mesh),
+            ("elements", self._element),
             ("instances", self._instance),
             ("lights", self._light),
         )
@@ -127,6 +128,14 @@ class SceneBuilder:
             setattr(desc, key[:-1] + "_count", len(layers))
         self._add("mesh", desc)
 
+    def _element(self, item):
+        desc = self._desc("element", item)
+        desc.kind = abi.ELEMENT[item["kind"]]
+        desc.weight = item["weight"]
+        desc.combine = int(item.get("combine", True))
+        desc.bounce = int(item.get("bounce", True))
+        self._add("element", desc)
+
     def _instance(self, item):
         desc = self._desc("instance", item)
         desc.mesh = item["mesh"]
@@ -140,6 +149,8 @@ class SceneBuilder:
         desc.page = _id(item.get("page"))
         desc.uv_scale[:] = item.get("uv_scale", (1, 1))
         desc.uv_offset[:] = item.get("uv_offset", (0, 0))
+        desc.element, desc.open_pose = _id(item.get("element")), int(item.get("open_pose", False))
+        desc.light_set = _id(item.get("light_set"))
         self._add("instance", desc)
 
     def _light(self, item):
@@ -160,6 +171,7 @@ class SceneBuilder:
             if key in item:
                 setattr(desc, key, item[key])
         desc.casts_shadow = int(item.get("casts_shadow", True))
+        desc.light_set = _id(item.get("light_set"))
         self._add("light", desc)
 
     def _sky(self, item):
@@ -178,10 +190,19 @@ def fill_settings(library, values, kind="settings"):
         if key == "struct_size" or not hasattr(settings, key):
             raise BakeError(abi.ERROR_ARGUMENT, f"unknown setting {key}", "settings")
         try:
-            setattr(settings, key, int(value) if isinstance(value, bool) else value)
-        except TypeError as error:
+            setattr(settings, key, _number(value))
+        except (TypeError, ValueError) as error:
             raise BakeError(abi.ERROR_ARGUMENT, f"{key}: {error}", "settings") from error
     return settings
+
+
+def _number(value):
+    """A setting as ctypes takes it: words of an enum and booleans become numbers."""
+    if isinstance(value, str):
+        if value not in abi.COMBINATIONS:
+            raise ValueError(f"no such choice: {value}")
+        return abi.COMBINATIONS[value]
+    return int(value) if isinstance(value, bool) else value
 
 
 def _id(value):

@@ -3,9 +3,9 @@
 
 import bpy
 
-from .. import model
+from .. import fields
 
-_DEFAULTS = {f.name: f.default for f in model.SCENE_FIELDS + model.OBJECT_FIELDS + model.WORLD_FIELDS}
+_DEFAULTS = {f.name: f.default for f in fields.SCENE_FIELDS + fields.OBJECT_FIELDS + fields.COLLECTION_FIELDS + fields.WORLD_FIELDS}
 
 # Columns map a working space of Blender 5 to Rec.709.
 _TO_REC709 = {
@@ -29,7 +29,7 @@ def has(owner, name):
 
 
 def ajar(owner, name):
-    """owner.ajar.<name> of a scene, object or world, or its default while unregistered."""
+    """owner.ajar.<name> of a scene, object, collection or world, or its default while unregistered."""
     group = getattr(owner.original if hasattr(owner, "original") else owner, "ajar", None)
     return getattr(group, name, _DEFAULTS.get(name)) if group is not None else _DEFAULTS.get(name)
 

@@ -10,6 +10,7 @@ from ..bridge.snapshot_io import Reader
 from ..bridge.snapshot_write import ArrayWriter
 from . import objects
 from .compat import ajar, transform
+from .tags import Tags
 from .visibility import render_view
 
 
@@ -29,7 +30,8 @@ def write_layout_request(context, directory, settings, keep_existing=False):
     The user's scene is as before when it returns or raises.
     """
     warnings = model.Warnings()
-    with ArrayWriter(directory, "layout") as writer, render_view(context) as (depsgraph, visible):
+    shown = render_view(context, Tags(context.scene).poses())
+    with ArrayWriter(directory, "layout") as writer, shown as (depsgraph, visible):
         users = receivers(context.view_layer, depsgraph, visible, warnings, keep_existing)
         meshes, mapping = [], LayoutMapping()
         for mesh, owners in users:

@@ -25,6 +25,10 @@ class MaterialTable:
             self.items.append(record)
         return self._ids[name]
 
+    def emits(self, material_id):
+        """Whether a material of the snapshot glows."""
+        return any(closure["type"] == "emission" for closure in self.items[material_id]["closures"])
+
     def _surface(self, material, owner):
         """(key, Surface); materials that no texture expresses are baked per owner."""
         if material is None:
@@ -53,8 +57,11 @@ class MaterialRecord:
 
     def build(self):
         """The material's dict."""
-        return {"name": self.surface.name, "one_sided": self.surface.one_sided,
-                "closures": [self._closure(c) for c in self.surface.closures]}
+        return {
+            "name": self.surface.name,
+            "one_sided": self.surface.one_sided,
+            "closures": [self._closure(c) for c in self.surface.closures],
+        }
 
     def _closure(self, closure):
         record = {"type": closure.type, "color": self._input(closure.color)}
@@ -63,8 +70,11 @@ class MaterialRecord:
         if closure.type == "emission":
             record["strength"] = self._input(closure.strength)
         if closure.type == "principled":
-            record.update(metallic=self._input(closure.metallic), specular=closure.specular,
-                          roughness=self._input(closure.roughness))
+            record.update(
+                metallic=self._input(closure.metallic),
+                specular=closure.specular,
+                roughness=self._input(closure.roughness),
+            )
         return record
 
     def _input(self, field):
@@ -76,8 +86,11 @@ class MaterialRecord:
         if field.color is not None:
             index = self.mesh.color_index(field.color)
             if index is None:
-                self._warn(f"colour attribute '{field.color}' is missing: black is used" if field.color
-                           else "there is no colour attribute: black is used")
+                self._warn(
+                    f"colour attribute '{field.color}' is missing: black is used"
+                    if field.color
+                    else "there is no colour attribute: black is used"
+                )
                 value = [0.0, 0.0, 0.0]
             else:
                 record["color_layer"] = index

@@ -4,17 +4,18 @@
 from dataclasses import dataclass, field
 
 import bpy
-import numpy as np
 
 from .. import model
 from ..bridge.snapshot_write import ArrayWriter
 from . import objects
 from .compat import ajar, transform
 from .cycles_bake import SocketBaker
+from .elements import ElementTable
 from .images import TextureStore
 from .light import extract_light
 from .material import MaterialTable
-from .mesh import MeshData, evaluated_mesh, lightmap_uv, read_mesh, rebuild_mesh, write_mesh
+from .mesh import evaluated_mesh, lightmap_uv, read_mesh, write_mesh
+from .placed import Placed
 from .visibility import render_view, rendered
 from .world import extract_sky
 
@@ -31,59 +32,6 @@ class ExtractResult:
     lights: int = 0
 
 
-@dataclass
-class Placed:
-    """An instance on its way into the snapshot."""
-
-    name: str
-    source: object  # the original object
-    mesh: MeshData
-    mesh_id: int
-    matrix: object
-    materials: list
-    surface: str = "occluder"
-    place: dict | None = None  # page, scale, offset
-    page_size: tuple = (1024, 1024)
-    add_layer: object = None
-    depsgraph: object = None  # None for instances, whose mesh need not be the source's
-
-    lightmap_layer_name = model.LIGHTMAP_UV
-
-    @property
-    def bake_key(self):
-        """What textures baked for this instance belong to: instances of one mesh share them."""
-        return ("mesh", self.mesh_id) if self.depsgraph is None else self.name
-
-    @property
-    def lightmap_uv(self):
-        return lightmap_uv(self.mesh) if self.surface == "lightmap" else None
-
-    @property
-    def page_texels(self):
-        """Texels per unit of the mesh's lightmap UVs, (x, y)."""
-        return np.array(self.page_size) * np.array(self.place["scale"])
-
-    def make_mesh(self, split):
-        """(new mesh data-block, its loops (T, 3)) with this instance's triangles, to be removed
-        by the caller. split: triangles share no loops; attributes but UVs and colours are lost.
-        """
-        if self.depsgraph is not None and not split:
-            evaluated = self.source.evaluated_get(self.depsgraph)
-            mesh = bpy.data.meshes.new_from_object(
-                evaluated, preserve_all_data_layers=True, depsgraph=self.depsgraph
-            )
-            if len(mesh.loops) > self.mesh.corner_loop.max():
-                return mesh, self.mesh.corner_loop
-            bpy.data.meshes.remove(mesh)
-        return rebuild_mesh(self.mesh), np.arange(self.mesh.corner_vertex.size).reshape(-1, 3)
-
-    def mesh_layer(self, name, make):
-        """UVs of an extra layer of the mesh, made by make(triangle count) the first time."""
-        if name not in self.mesh.uv_layers:
-            self.add_layer(self.mesh_id, name, make(len(self.mesh.corner_vertex)))
-        return self.mesh.uv_layers[name]
-
-
 def write_snapshot(context, directory, engine_settings, layout=None):
     """Writes snapshot.json and snapshot.bin of the scene in context to directory.
 
@@ -93,8 +41,10 @@ def write_snapshot(context, directory, engine_settings, layout=None):
     the directory cannot be written. The user's scene is as before when it returns or raises.
     """
     warnings = model.Warnings()
-    with ArrayWriter(directory, "snapshot") as writer, render_view(context) as (depsgraph, visible):
-        extraction = _Extraction(context.scene, depsgraph, visible, writer, warnings, layout or {})
+    elements = ElementTable(context.scene, warnings)
+    shown = render_view(context, elements.tags.poses())
+    with ArrayWriter(directory, "snapshot") as writer, shown as (depsgraph, visible):
+        extraction = _Extraction(context.scene, depsgraph, visible, writer, warnings, layout or {}, elements)
         data = extraction.run()
         data.update(settings=dict(engine_settings), warnings=warnings.as_json())
         writer.finish(data)
@@ -109,7 +59,7 @@ def write_snapshot(context, directory, engine_settings, layout=None):
 class _Extraction:
     """One pass over the instances of a depsgraph."""
 
-    def __init__(self, scene, depsgraph, visible, writer, warnings, layout):
+    def __init__(self, scene, depsgraph, visible, writer, warnings, layout, elements):
         self.scene, self.depsgraph, self.visible = scene, depsgraph, visible
         self.writer, self.warnings = writer, warnings
         self.pages, self.places = layout.get("pages", []), layout.get("objects", {})
@@ -117,7 +67,7 @@ class _Extraction:
         self._baked = {}
         self.materials = MaterialTable(self.store, warnings, self._baker)
         self.mesh_records, self._meshes, self._mesh_ids = [], [], {}
-        self.placed, self.lights = [], []
+        self.placed, self.lights, self.elements = [], [], elements
 
     def run(self):
         """The snapshot's dict, all arrays written."""
@@ -134,6 +84,7 @@ class _Extraction:
             "textures": self.store.items,
             "materials": self.materials.items,
             "meshes": self.mesh_records,
+            "elements": self.elements.finish(),
             "instances": instances,
             "lights": self.lights,
             "sky": sky,
@@ -148,6 +99,7 @@ class _Extraction:
             )
             if light is not None:
                 self.lights.append(light)
+                self.elements.link_light(light, obj.original, _instancer(instance))
         elif obj.type in objects.GEOMETRY and ajar(obj, "surface") != "IGNORE":
             self._geometry(instance)
         if obj.particle_systems and any(p.settings.render_type == "PATH" for p in obj.particle_systems):
@@ -175,6 +127,8 @@ class _Extraction:
             instance.matrix_world.copy(),
             _slots(obj, mesh),
             add_layer=self._add_layer,
+            instancer=_instancer(instance),
+            occurrence=_occurrence(instance),
         )
         if not instance.is_instance:
             placed.depsgraph = self.depsgraph
@@ -261,7 +215,21 @@ class _Extraction:
                 uv_scale=list(place["scale"]),
                 uv_offset=list(place["offset"]),
             )
+        glows = any(self.materials.emits(m) for m in record["materials"])
+        self.elements.link_movable(record, obj, placed.instancer, placed.occurrence)
+        self.elements.link_glow(record, obj, placed.instancer, glows)
         return record
+
+
+def _instancer(instance):
+    """The original object that makes an instance; None for a real object."""
+    return instance.parent.original if instance.is_instance and instance.parent is not None else None
+
+
+def _occurrence(instance):
+    """Tells apart what an instancer places several times through instancers inside of it."""
+    outer = [str(i) for i in instance.persistent_id[1:] if i != 0x7FFFFFFF] if instance.is_instance else []
+    return "." + "_".join(outer) if outer else ""
 
 
 def _slots(obj, mesh):

@@ -19,18 +19,22 @@ _PAIRS = {
 
 
 @contextmanager
-def render_view(context):
-    """Yields (depsgraph, names of render-visible objects) as a render would see the scene."""
+def render_view(context, always=frozenset()):
+    """Yields (depsgraph, names of render-visible objects) as a render would see the scene. Objects
+    named in always count as visible."""
     view_layer = context.view_layer
     undo = []
     try:
         visible = set()
-        _align_collections(view_layer.layer_collection, undo, visible, True)
+        _align_collections(view_layer.layer_collection, undo, visible, always, True)
         for obj in view_layer.objects:
             if obj.mode == "EDIT":
                 obj.update_from_editmode()
-            _align_object(obj, view_layer, undo)
+            _align_object(obj, view_layer, undo, always)
         for obj in _instanced_objects(view_layer.objects):
+            if obj.name_full in always:
+                _set(obj, "hide_viewport", False, undo)
+                visible.add(obj.name_full)
             _align_modifiers(obj, undo)
         view_layer.update()
         yield context.evaluated_depsgraph_get(), visible
@@ -53,23 +57,23 @@ def _set(owner, name, value, undo):
     undo.append(lambda: setattr(owner, name, old))
 
 
-def _align_collections(layer_collection, undo, visible, shown):
+def _align_collections(layer_collection, undo, visible, always, shown):
     """Shows what renders; collects the names of objects in collections that render."""
     if layer_collection.exclude:
         return
     collection = layer_collection.collection
     shown = shown and not collection.hide_render
     _set(layer_collection, "hide_viewport", False, undo)
-    if collection.hide_viewport and shown:
+    if collection.hide_viewport and (shown or any(o.name_full in always for o in collection.all_objects)):
         _set(collection, "hide_viewport", False, undo)
-    if shown:
-        visible.update(o.name_full for o in collection.objects if not o.hide_render)
+    names = {o.name_full for o in collection.objects if shown and not o.hide_render}
+    visible.update(names | {o.name_full for o in collection.objects if o.name_full in always})
     for child in layer_collection.children:
-        _align_collections(child, undo, visible, shown)
+        _align_collections(child, undo, visible, always, shown)
 
 
-def _align_object(obj, view_layer, undo):
-    if obj.hide_render:
+def _align_object(obj, view_layer, undo, always):
+    if obj.hide_render and obj.name_full not in always:
         return
     _set(obj, "hide_viewport", False, undo)
     if obj.hide_get(view_layer=view_layer):
@@ -106,7 +110,7 @@ def rendered(instance, visible):
         parent = instance.parent.original if instance.parent is not None else None
         collections = obj.users_collection
         hidden = obj.hide_render or (collections and all(c.hide_render for c in collections))
-        return not hidden and (parent is None or parent.name_full in visible)
+        return (not hidden or obj.name_full in visible) and (parent is None or parent.name_full in visible)
     if obj.instance_type in {"VERTS", "FACES"} and not obj.show_instancer_for_render:
         return False
     return obj.name_full in visible

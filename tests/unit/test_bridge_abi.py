@@ -28,9 +28,17 @@ def header(root):
 def header_structs(header):
     """{struct: [(field, C type, array length or None)]}."""
     found = {}
+    header = with_numbers(header)
     for body, name in re.findall(r"typedef struct \w+ \{(.*?)\} (\w+);", header, re.S):
         found[name] = [field for line in body.split(";") for field in fields_of(line.strip())]
     return found
+
+
+def with_numbers(header):
+    """The header with array lengths that are names of a #define replaced by their numbers."""
+    for name, number in re.findall(r"#define (AJAR_\w+) (\d+)u\b", header):
+        header = re.sub(rf"\[{name}\]", f"[{number}]", header)
+    return header
 
 
 def fields_of(line):
@@ -103,6 +111,7 @@ def test_numbers(header):
     values = {n: int(v, 0) for n, v in re.findall(r"(AJAR_\w+) = (-?\w+)", header)}
     assert int(re.search(r"AJAR_ABI_VERSION (\d+)u", header)[1]) == abi.ABI_VERSION
     assert int(re.search(r"AJAR_MAX_CLOSURES (\d+)u", header)[1]) == abi.MAX_CLOSURES
+    assert int(re.search(r"AJAR_MAX_TERM_ELEMENTS (\d+)u", header)[1]) == abi.MAX_TERM_ELEMENTS
     for name in (n for n in vars(abi) if n.startswith("ERROR_")):
         assert getattr(abi, name) == values["AJAR_" + name], name
     assert (abi.OK, abi.CANCELLED, abi.RUNNING) == tuple(
@@ -118,6 +127,8 @@ def test_numbers(header):
         "VISIBLE": abi.VISIBLE,
         "ROLE": abi.ROLE,
         "SKY": abi.SKY,
+        "ELEMENT": abi.ELEMENT,
+        "COMBINATIONS": abi.COMBINATIONS,
     }
     for prefix, table in words.items():
         for word, number in table.items():

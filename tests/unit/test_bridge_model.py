@@ -2,22 +2,23 @@
 """The settings table: its presets and ranges, and that it covers the C structs."""
 import pytest
 
-from blender_addon import model
+from blender_addon import fields, model
 from blender_addon.bridge import abi
 
 
 def test_tables_cover_the_structs():
-    for fields, struct in ((model.ENGINE_FIELDS, abi.Settings), (model.LAYOUT_FIELDS, abi.LayoutSettings)):
-        assert [f.name for f in fields] == [n for n, _ in struct._fields_ if n != "struct_size"]
+    for table, struct in ((fields.ENGINE_FIELDS, abi.Settings), (fields.LAYOUT_FIELDS, abi.LayoutSettings)):
+        assert [f.name for f in table] == [n for n, _ in struct._fields_ if n != "struct_size"]
 
 
 def test_defaults_are_in_range():
     tables = (
-        model.ENGINE_FIELDS,
-        model.LAYOUT_FIELDS,
-        model.SCENE_FIELDS,
-        model.OBJECT_FIELDS,
-        model.WORLD_FIELDS,
+        fields.ENGINE_FIELDS,
+        fields.LAYOUT_FIELDS,
+        fields.SCENE_FIELDS,
+        fields.OBJECT_FIELDS,
+        fields.COLLECTION_FIELDS,
+        fields.WORLD_FIELDS,
     )
     for field in sum(tables, ()):
         assert model.check_value(field, field.default) == field.default
@@ -40,7 +41,15 @@ def test_samples_alone_turn_the_target_off():
 
 
 @pytest.mark.parametrize(
-    "change", [{"bounces": -1}, {"noise_target": 2.0}, {"typo": 1}, {"time_limit": float("nan")}]
+    "change",
+    [
+        {"bounces": -1},
+        {"noise_target": 2.0},
+        {"typo": 1},
+        {"time_limit": float("nan")},
+        {"combinations": "SOME"},
+        {"term_threshold": -0.1},
+    ],
 )
 def test_bad_settings(change):
     with pytest.raises(model.SettingsError, match=next(iter(change))):

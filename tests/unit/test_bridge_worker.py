@@ -169,6 +169,50 @@ def test_errors_name_the_culprit(tmp_path, library, edit, culprit):
     assert not (tmp_path / "package").exists()
 
 
+ELEMENTS = [
+    {"name": "Lamps", "kind": "light_set", "weight": 2.0, "combine": False},
+    {"name": "Gate", "kind": "door", "weight": 0.0, "combine": True, "bounce": False},
+    {"name": "Vase", "kind": "toggle", "weight": 1.0},
+]
+
+
+def with_elements(folder, edit=lambda data: None):
+    """The square as the closed leaf of a door, its lamp in a light set."""
+
+    def add(data):
+        data["elements"] = [dict(element) for element in ELEMENTS]
+        data["instances"][0].update(element=1, open_pose=False)
+        data["lights"][0]["light_set"] = 0
+        data["settings"].update(combinations="NONE", term_threshold=0.5)
+        edit(data)
+
+    change(write_snapshot(folder), add)
+    return folder
+
+
+def test_elements(tmp_path, library):
+    events = run(bake(tmp_path, library, with_elements(tmp_path / "shot")))
+    assert events[-1]["event"] == "done", events[-1]
+
+
+@pytest.mark.parametrize(
+    "edit, culprit, words",
+    [
+        (lambda d: d["elements"][0].update(weight=-1.0), "Lamps", "weight"),
+        (lambda d: d["elements"][1].update(weight=1.5), "Gate", "openness"),
+        (lambda d: d["elements"][2].update(kind="window"), "Vase", "window"),
+        (lambda d: d["instances"][0].update(element=0), "Square", "light set"),
+        (lambda d: d["instances"][0].update(element=2, open_pose=True), "Square", "open pose"),
+        (lambda d: d["instances"][0].update(light_set=1), "Square", "light set"),
+        (lambda d: d["lights"][0].update(light_set=7), "Lamp", "element"),
+        (lambda d: d["settings"].update(combinations="SOME"), "settings", "SOME"),
+    ],
+)
+def test_wrong_elements_name_the_culprit(tmp_path, library, edit, culprit, words):
+    final = run(bake(tmp_path, library, with_elements(tmp_path / "shot", edit)))[-1]
+    assert final["event"] == "error" and final["culprit"] == culprit and words in final["message"], final
+
+
 def test_missing_snapshot_and_library(tmp_path, library):
     final = run(bake(tmp_path, library, tmp_path / "none"))[-1]
     assert final["event"] == "error" and "none" in final["message"]
