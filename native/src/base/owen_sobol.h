@@ -39,10 +39,11 @@ inline uint32_t sobol_second_reversed(uint32_t index) {
 /// the sequence while each block stays a net (Burley 2020, section 5).
 inline uint32_t shuffle_index(uint32_t index, uint32_t seed) { return reverse_bits(laine_karras(reverse_bits(index), seed)); }
 
-/// Point index of the sequence scrambled by seed, in [0,1)^2.
+/// Point index of the sequence scrambled by seed, in [0,1)^2. The dimensions' seeds must differ by
+/// more than a flip of fixed bits, whose hashes are too much alike: single points would cluster.
 inline Vec2 owen_sobol(uint32_t index, uint32_t seed) {
     const uint32_t x = reverse_bits(laine_karras(index, hash32(seed)));
-    const uint32_t y = reverse_bits(laine_karras(sobol_second_reversed(index), hash32(seed ^ 0x68bc21ebu)));
+    const uint32_t y = reverse_bits(laine_karras(sobol_second_reversed(index), hash32(seed + 0x9e3779b9u)));
     return {unit_float(x), unit_float(y)};
 }
 
