@@ -195,10 +195,9 @@ EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u
 }
 
 EmitterSample EmitterSet::sample_sky(const Vec2& u) const {
-    float density;
-    const Vec3 w = sky_->sample(u, density);
-    if (!(density > 0.0f)) return {};
-    return {w, std::numeric_limits<float>::infinity(), Vec3(0.0f), scene_.sky.radiance(w) / density, density, true};
+    const SkySample s = sky_->sample(u);
+    if (!(s.pdf > 0.0f)) return {};
+    return {s.direction, std::numeric_limits<float>::infinity(), Vec3(0.0f), s.radiance / s.pdf, s.pdf, true};
 }
 
 float EmitterSet::triangle_pdf(uint32_t triangle, float distance, float cosine) const {

@@ -40,9 +40,8 @@ float SkySampler::texel_solid_angle(uint32_t y) const {
     return (std::sin(high) - std::sin(low)) * 2.0f * kPi / static_cast<float>(sky_.image.width);
 }
 
-Vec3 SkySampler::sample(const Vec2& u, float& density) const {
-    density = 0.0f;
-    if (!(total_ > 0.0f)) return {0, 0, 1};
+SkySample SkySampler::sample(const Vec2& u) const {
+    if (!(total_ > 0.0f)) return {};
     const uint32_t w = sky_.image.width, h = sky_.image.height;
     float fx, fy;
     const uint32_t y = pick(row_cdf_.data(), h, u.y, fy);
@@ -53,8 +52,8 @@ Vec3 SkySampler::sample(const Vec2& u, float& density) const {
     const float z = std::clamp(low + (high - low) * fy, -1.0f, 1.0f);
     const float phi = (0.5f - (static_cast<float>(x) + fx) / static_cast<float>(w)) * 2.0f * kPi;
     const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
-    density = luminance(sky_.color * Vec3(sky_.image.texel(x, y))) / total_;
-    return {r * std::cos(phi), r * std::sin(phi), z};
+    const Vec3 radiance = sky_.color * Vec3(sky_.image.texel(x, y));
+    return {{r * std::cos(phi), r * std::sin(phi), z}, radiance, luminance(radiance) / total_};
 }
 
 float SkySampler::pdf(const Vec3& w) const { return total_ > 0.0f ? std::max(0.0f, luminance(sky_.radiance(w))) / total_ : 0.0f; }

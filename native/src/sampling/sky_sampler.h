@@ -7,12 +7,20 @@
 
 namespace ajar {
 
+/// A direction of the sky. The radiance is that of the texel it was drawn from: looked up by the
+/// rounded direction it could be a brighter neighbour's, far too bright for this density.
+struct SkySample {
+    Vec3 direction{0, 0, 1}; ///< unit
+    Vec3 radiance{0.0f};     ///< W/(m^2 sr)
+    float pdf = 0.0f;        ///< per steradian; 0 where the sky is black
+};
+
 /// Importance sampling of an image sky, by luminance times solid angle of its texels.
 class SkySampler {
 public:
     explicit SkySampler(const Sky& sky);
-    /// Unit direction and its density per steradian; density 0 where the sky is black.
-    Vec3 sample(const Vec2& u, float& pdf) const;
+    SkySample sample(const Vec2& u) const;
+    /// Density per steradian with which sample() picks w.
     float pdf(const Vec3& w) const;
     /// Integral of luminance over the sphere, W/m^2.
     float total() const { return total_; }
