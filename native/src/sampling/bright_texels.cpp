@@ -102,13 +102,14 @@ uint32_t EmitterSet::pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, 
     uint32_t chosen = kNone;
     float total = 0.0f, target = 0.0f;
     for (uint32_t i = 0; i < kAnywhereTries; ++i) {
-        const Vec2 u = owen_sobol(i, seed);
-        const auto e = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(anywhere_.begin(), anywhere_.end(), u.x * anywhere_.back()) - anywhere_.begin(), static_cast<ptrdiff_t>(anywhere_.size()) - 1));
+        const float u = owen_sobol(i, seed).x;
+        const auto e = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(anywhere_.begin(), anywhere_.end(), u * anywhere_.back()) - anywhere_.begin(), static_cast<ptrdiff_t>(anywhere_.size()) - 1));
         const float global = (anywhere_[e] - (e > 0 ? anywhere_[e - 1] : 0.0f)) / anywhere_.back();
         const float here = importance(e, p, n);
         const float weight = here / global;
         total += weight;
-        if (weight > 0.0f && u.y * total < weight) chosen = e, target = here;
+        // Strata must not tie one decision to the next, or some candidates win too often.
+        if (weight > 0.0f && unit_float(hash_combine(seed, i)) * total < weight) chosen = e, target = here;
     }
     chance = chosen != kNone ? target * static_cast<float>(kAnywhereTries) / total : 0.0f;
     return chosen;
