@@ -33,6 +33,11 @@ inline Vec3 normalize_or(const Vec3& v, const Vec3& fallback) {
     return length2 > 1e-30f && std::isfinite(length2) ? v / std::sqrt(length2) : fallback;
 }
 
+/// Sine of the angle between two unit vectors; 1 from a right angle on.
+inline float sine_between(const Vec3& a, const Vec3& b) {
+    return glm::dot(a, b) > 0.0f ? std::min(1.0f, glm::length(glm::cross(a, b))) : 1.0f;
+}
+
 /// Orthonormal frame; local z is the shading normal.
 struct Frame {
     Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};

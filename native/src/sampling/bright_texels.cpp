@@ -36,7 +36,7 @@ EmitterSet EmitterSet::with_bright_texels(std::vector<BrightTexel> texels) const
 }
 
 void EmitterSet::add_bright_cluster(uint32_t first, uint32_t count) {
-    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true, kNoElement, {}};
+    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, 0.0f, kNoElement, {}};
     for (uint32_t i = first; i < first + count; ++i) {
         const BrightTexel& t = bright_[i];
         c.power += luminance(t.radiance) * area_of(t);
@@ -53,6 +53,7 @@ void EmitterSet::add_bright_cluster(uint32_t first, uint32_t count) {
     for (uint32_t i = first; i < first + count; ++i) {
         bright_index_[bright_[i].texel] = static_cast<uint32_t>(bright_entries_.size());
         bright_entries_.push_back({this->count(), luminance(bright_[i].radiance) / c.power});
+        c.bend = std::max(c.bend, sine_between(bright_[i].normal, c.axis));
     }
     clusters_.push_back(c);
     emitters_.push_back({Kind::bright, static_cast<uint32_t>(clusters_.size() - 1)});

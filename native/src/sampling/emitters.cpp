@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kEmissionSamples = 16;
 constexpr uint32_t kClusterSize = 8;
+constexpr float kFlatBend = 0.25f;   ///< clusters more bent than this count as shining everywhere
 constexpr float kLargeShare = 0.2f; ///< of the scene's area; larger emitters are left to the gather
 
 bool two_sided(const Snapshot& s, uint32_t triangle) { return !s.materials[s.triangles[triangle].material].one_sided; }
@@ -120,7 +121,7 @@ void EmitterSet::split(uint32_t first, uint32_t count) {
 }
 
 void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
-    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, true, kNoElement, {}};
+    Cluster c{first, count, Vec3(0.0f), 0.0f, Vec3(0.0f), 0.0f, false, 0.0f, kNoElement, {}};
     for (uint32_t i = first; i < first + count; ++i) {
         EmissiveTriangle& t = triangles_[i];
         c.power += t.power;
@@ -136,7 +137,7 @@ void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
     c.presence = scene_.presence(triangles_[first].triangle);
     for (uint32_t i = first; i < first + count; ++i) {
         const EmissiveTriangle& t = triangles_[i];
-        c.flat &= glm::dot(scene_.geometric_normal(t.triangle), c.axis) > 0.999f;
+        c.bend = std::max(c.bend, sine_between(scene_.geometric_normal(t.triangle), c.axis));
         triangle_density_[t.triangle] = t.power / (c.power * t.area);
         triangle_emitter_[t.triangle] = this->count();
     }
@@ -150,9 +151,9 @@ float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3
     const float cosine = std::min(1.0f, (glm::dot(to, n) + c.radius) / distance);
     if (cosine <= 0.0f) return 0.0f;
     float facing = 1.0f;
-    if (c.flat) {
+    if (c.bend < kFlatBend) {
         const float toward = -glm::dot(to, c.axis);
-        facing = std::clamp(((c.two_sided ? std::abs(toward) : toward) + c.radius) / distance, 0.0f, 1.0f);
+        facing = std::clamp(((c.two_sided ? std::abs(toward) : toward) + c.radius * (1.0f + c.bend)) / distance + c.bend, 0.0f, 1.0f);
     }
     return c.power * cosine * facing / std::max(distance2, 0.25f * c.radius * c.radius);
 }

@@ -84,7 +84,7 @@ private:
         Vec3 axis;    ///< mean normal
         float power;  ///< sum of luminance * area
         bool two_sided;
-        bool flat;    ///< all normals agree with axis
+        float bend;   ///< sine of the largest angle between a normal and axis
         uint32_t set = kNoElement;
         Presence presence = {};
     };
