@@ -46,6 +46,7 @@ public:
         d.surface = uv.empty() ? AJAR_SURFACE_OCCLUDER : AJAR_SURFACE_LIGHTMAP;
         d.visibility = AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW;
         d.page = page;
+        d.element = d.light_set = AJAR_NONE;
         d.uv_scale[0] = d.uv_scale[1] = 1.0f;
         return builder_.add_instance(d);
     }
@@ -61,6 +62,7 @@ public:
         d.size_x = d.size_y = 1.0f;
         d.spread = d.spot_angle = kPi;
         d.casts_shadow = 1;
+        d.light_set = AJAR_NONE;
         return d;
     }
     uint32_t light(const ajar_light_desc& d) { return builder_.add_light(d); }

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Choosing emitters per receiver: whatever the chances, they must add to one and be the ones used.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/hash.h"
+#include "sampling/light_choice.h"
+#include "snapshot_kit.h"
+
+namespace ajar {
+namespace {
+
+using Random = std::mt19937;
+constexpr uint32_t kReceivers = 5;
+
+float unit(Random& random) { return unit_float(static_cast<uint32_t>(random())); }
+
+/// Lamps above a floor, some behind a wall, one of them primary; a glowing quad and a sky. The
+/// receivers stand in a row on the floor.
+struct Hall {
+    SnapshotKit kit;
+    const Snapshot* scene;
+    ThreadPool pool{1};
+    Progress progress;
+    std::unique_ptr<EmitterSet> emitters;
+    std::unique_ptr<Tracer> tracer;
+    LightmapReceivers receivers;
+    static constexpr Tile kTile{0, kReceivers};
+    uint32_t primary = EmitterSet::kNone;
+
+    explicit Hall(uint32_t lamps) {
+        const uint32_t grey = kit.material(Vec3(0.5f));
+        kit.object(parallelogram({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}), grey);
+        kit.object(parallelogram({0, -10, 0.01f}, {0, 20, 0}, {0, 0, 6}), grey); // wall at x = 0
+        kit.object(parallelogram({3, 3, 4}, {0, 0.5f, 0}, {0.5f, 0, 0}),
+                   kit.material(Vec3(0.5f), Vec3(9.0f))); // faces down
+        Random random(1);
+        for (uint32_t i = 0; i < lamps; ++i) {
+            const Vec3 p(16.0f * unit(random) - 8.0f, 16.0f * unit(random) - 8.0f, 1.0f + 4.0f * unit(random));
+            ajar_light_desc d = kit.lamp(AJAR_LIGHT_POINT, p, std::exp(4.0f * unit(random)));
+            d.role = i == 7 ? AJAR_ROLE_PRIMARY : AJAR_ROLE_STATIC;
+            kit.light(d);
+        }
+        kit.sky(4, 2, std::vector<float>(8, 0.2f));
+        scene = &kit.commit();
+        emitters = std::make_unique<EmitterSet>(*scene, pool, progress);
+        tracer = std::make_unique<Tracer>(*scene);
+        for (uint32_t e = 0; e < emitters->count(); ++e)
+            if (emitters->is_primary(e)) primary = e;
+        for (uint32_t r = 0; r < kReceivers; ++r) {
+            receivers.texel.push_back(r);
+            receivers.frame.push_back(Frame{});
+            receivers.positions.push_back(Vec3(DVec3(0.5 + r, 1.0, 0.001) - scene->origin));
+        }
+    }
+    LightChoice choice(LightRoles roles) {
+        LightChoice c(*emitters, roles);
+        c.begin(*scene, *tracer, receivers, kTile, 5);
+        return c;
+    }
+};
+
+/// More lamps than are weighed for every receiver, and few.
+constexpr uint32_t kLampCounts[] = {60, 3};
+
+TEST(LightChoice, ChancesAddToOne) {
+    for (const uint32_t lamps : kLampCounts) {
+        Hall hall(lamps);
+        for (const LightRoles roles : {LightRoles::all, LightRoles::stored}) {
+            const LightChoice choice = hall.choice(roles);
+            ASSERT_FALSE(choice.empty());
+            for (uint32_t local = 0; local < kReceivers; ++local) {
+                double sum = 0.0;
+                for (uint32_t e = 0; e < hall.emitters->count(); ++e) sum += choice.chance(local, e);
+                EXPECT_NEAR(sum, 1.0, 1e-5) << lamps << ' ' << local;
+            }
+        }
+    }
+}
+
+TEST(LightChoice, EveryLightThatReachesAReceiverHasAChance) {
+    Hall hall(60);
+    const LightChoice choice = hall.choice(LightRoles::all);
+    for (uint32_t local = 0; local < kReceivers; ++local)
+        for (uint32_t e = 0; e < hall.emitters->count(); ++e)
+            EXPECT_TRUE(choice.chance(local, e) > 0.0f ||
+                        hall.emitters->importance(e, hall.receivers.origins(local)[0], {0, 0, 1}) == 0.0f)
+                << e;
+}
+
+TEST(LightChoice, PrimaryLampsAreNotStored) {
+    Hall hall(60);
+    ASSERT_NE(hall.primary, EmitterSet::kNone);
+    const LightChoice all = hall.choice(LightRoles::all), stored = hall.choice(LightRoles::stored);
+    EXPECT_GT(all.chance(0, hall.primary), 0.0f);
+    EXPECT_EQ(stored.chance(0, hall.primary), 0.0f);
+}
+
+TEST(LightChoice, PicksHaveTheirChanceAndReuseTheirNumber) {
+    // Equally spaced numbers instead of random ones: every emitter gets its share to within the
+    // spacing, and what is left of the numbers is equally spaced again.
+    constexpr uint32_t kCount = 1 << 18;
+    for (const uint32_t lamps : kLampCounts) {
+        Hall hall(lamps);
+        const LightChoice choice = hall.choice(LightRoles::stored);
+        for (uint32_t local = 0; local < kReceivers; local += 2) {
+            std::vector<std::vector<float>> rest(hall.emitters->count());
+            for (uint32_t i = 0; i < kCount; ++i) {
+                float u = (static_cast<float>(i) + 0.5f) / kCount, chance;
+                const uint32_t e = choice.pick(local, u, chance);
+                ASSERT_LT(e, rest.size());
+                ASSERT_EQ(chance, choice.chance(local, e)) << e;
+                ASSERT_GE(u, 0.0f);
+                ASSERT_LT(u, 1.0f);
+                rest[e].push_back(u);
+            }
+            for (uint32_t e = 0; e < rest.size(); ++e) {
+                const double share = double(rest[e].size()) / kCount, chance = choice.chance(local, e);
+                EXPECT_NEAR(share, chance, 2.0 / kCount) << lamps << ' ' << local << ' ' << e;
+                for (size_t i = 0; i < rest[e].size(); ++i) { // in ascending order, as they came
+                    const double even = (double(i) + 0.5) / double(rest[e].size());
+                    ASSERT_NEAR(rest[e][i], even, 2.0 / double(rest[e].size()) + 1e-6 / chance)
+                        << lamps << ' ' << local << ' ' << e;
+                }
+            }
+        }
+    }
+}
+
+TEST(LightChoice, TheEndsOfTheUnitIntervalAreSafe) {
+    for (const uint32_t lamps : kLampCounts) {
+        Hall hall(lamps);
+        const LightChoice choice = hall.choice(LightRoles::stored);
+        for (const float end : {0.0f, 0x1.fffffep-1f}) {
+            float u = end, chance = 0.0f;
+            EXPECT_LT(choice.pick(0, u, chance), hall.emitters->count());
+            EXPECT_GT(chance, 0.0f);
+        }
+    }
+}
+
+TEST(LightChoice, SamplesAddUpToEveryLightTogether) {
+    // Unshadowed irradiance: one sample of one emitter over its chance, against all emitters'.
+    Hall hall(60);
+    const LightChoice choice = hall.choice(LightRoles::stored);
+    const Vec3 p = hall.receivers.origins(2)[0], n(0, 0, 1);
+    constexpr int kCount = 200000, kEach = 4000;
+    const auto light = [&](uint32_t e, const Vec2& u) {
+        const EmitterSample s = hall.emitters->sample(e, p, u);
+        return double(s.weight.x) * std::max(0.0f, glm::dot(s.direction, n));
+    };
+    Random random(2);
+    double expected = 0.0, sum = 0.0, squares = 0.0;
+    for (uint32_t e = 0; e < hall.emitters->count(); ++e)
+        for (int i = 0; i < kEach && e != hall.primary; ++i) expected += light(e, {unit(random), unit(random)}) / kEach;
+    for (int i = 0; i < kCount; ++i) {
+        float u = unit(random), chance;
+        const uint32_t e = choice.pick(2, u, chance);
+        const double v = light(e, {u, unit(random)}) / chance;
+        sum += v / kCount;
+        squares += v * v / kCount;
+    }
+    const double error = std::sqrt((squares - sum * sum) / kCount);
+    EXPECT_NEAR(sum, expected, 4.5 * error + 0.002 * expected);
+    EXPECT_LT(error, 0.01 * expected);
+}
+
+TEST(LightChoice, LampsBehindTheWallAreRarelyAsked) {
+    Hall hall(60);
+    const LightChoice choice = hall.choice(LightRoles::stored);
+    double hidden = 0.0;
+    for (uint32_t i = 0; i < hall.scene->lights.size(); ++i)
+        if (hall.scene->lights[i].position.x + hall.scene->origin.x < 0.0) hidden += choice.chance(2, i);
+    EXPECT_LT(hidden, 0.1); // half of all lamps are there
+    EXPECT_GT(hidden, 0.0);
+}
+
+TEST(LightChoice, WithoutLightsThereIsNothingToPick) {
+    SnapshotKit kit;
+    kit.object(parallelogram({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), kit.material(Vec3(0.5f)));
+    const Snapshot& scene = kit.commit();
+    ThreadPool pool(1);
+    Progress progress;
+    const EmitterSet emitters(scene, pool, progress);
+    const Tracer tracer(scene);
+    LightmapReceivers receivers;
+    receivers.texel = {0};
+    receivers.frame.resize(1);
+    receivers.positions = {Vec3(0, 0, 0.001f)};
+    LightChoice choice(emitters, LightRoles::all);
+    choice.begin(scene, tracer, receivers, {0, 1}, 1);
+    EXPECT_TRUE(choice.empty());
+}
+
+} // namespace
+} // namespace ajar
