@@ -188,7 +188,30 @@ def layout_steps(job, keep_existing=False, overrides=None, end=1.0):
 
 
 def bake_steps(job, package, report, keep_existing=False, overrides=None, show=True):
-    """The whole bake: layout, snapshot, worker, record and preview."""
+    """The whole bake: layout, snapshot, worker, record and preview. Unless a new package came to be,
+    the scene keeps the lightmap UVs of the last one."""
+    kept, stamp = uvs.KeptLayout(job.link.scene()), _stamp(package)
+    try:
+        yield from _package_steps(job, package, report, keep_existing, overrides)
+    except BaseException:
+        if not job.link.detached and _stamp(package) == stamp:
+            kept.restore(job.link.scene())
+        raise
+    job.status.stage, job.status.fraction, job.status.remaining = "done", 1.0, 0.0
+    finish(job, package, report, show, overrides)
+
+
+def _stamp(package):
+    """What tells a package from the one that replaced it; None if there is none."""
+    try:
+        manifest = os.stat(os.path.join(package, "manifest.json"))
+    except OSError:
+        return None
+    return manifest.st_ino, manifest.st_mtime_ns
+
+
+def _package_steps(job, package, report, keep_existing, overrides):
+    """A bake up to its package: layout, snapshot and worker."""
     layout = yield from layout_steps(job, keep_existing, overrides, 0.05)
     job.status.stage = "scene export"
     yield
@@ -201,8 +224,6 @@ def bake_steps(job, package, report, keep_existing=False, overrides=None, show=T
     job.status.warn_all(written.warnings)
     os.makedirs(os.path.dirname(package), exist_ok=True)
     yield from job.run_worker(WorkerClient.bake(folder, package, report), 0.07, 1.0)
-    job.status.stage, job.status.fraction, job.status.remaining = "done", 1.0, 0.0
-    finish(job, package, report, show, overrides)
 
 
 def finish(job, package, report, show, overrides=None):

@@ -2,6 +2,7 @@
 """Writes a layout into the scene: the AjarLightmap UV layer of each mesh, and page, scale
 and offset of each object. Active and render UV layers stay as they are."""
 import bpy
+import numpy as np
 
 from ..model import LIGHTMAP_UV as UV_LAYER
 
@@ -41,6 +42,47 @@ def _place(obj, place):
     obj.ajar.lightmap_page = place["page"]
     obj.ajar.uv_scale = place["scale"]
     obj.ajar.uv_offset = place["offset"]
+
+
+class KeptLayout:
+    """The lightmap UVs and places of a scene as they are now. A bake that does not finish puts them
+    back, because the package on disk, which is the last one then, was made for them."""
+
+    def __init__(self, scene):
+        own = [obj for obj in scene.objects if obj.library is None]
+        self._places = {obj.name: _placement(obj) for obj in own}
+        meshes = {obj.data.name: obj.data for obj in own if obj.type == "MESH" and not obj.data.library}
+        self._uvs = {name: read_uv_layer(mesh) for name, mesh in meshes.items()}
+
+    def restore(self, scene):
+        """Puts everything back, but for what the artist removed or edited meanwhile."""
+        forget_placements(scene.objects)
+        for name, place in self._places.items():
+            obj = scene.objects.get(name)
+            if obj is not None and place["page"] >= 0:
+                _place(obj, place)
+        for name, uv in self._uvs.items():
+            mesh = bpy.data.meshes.get(name)
+            if mesh is None or mesh.is_editmode:
+                continue
+            if uv is None:
+                remove_uv_layer(mesh)
+            elif len(uv) == 2 * len(mesh.loops):
+                write_uv_layer(mesh, uv)
+
+
+def _placement(obj):
+    return {"page": obj.ajar.lightmap_page, "scale": tuple(obj.ajar.uv_scale), "offset": tuple(obj.ajar.uv_offset)}
+
+
+def read_uv_layer(mesh):
+    """Flat corner UVs of the mesh's AjarLightmap layer, or None if it has none (or is being edited)."""
+    layer = mesh.uv_layers.get(UV_LAYER)
+    if layer is None or len(layer.data) != len(mesh.loops):
+        return None
+    uv = np.empty(2 * len(mesh.loops), dtype=np.float32)
+    layer.data.foreach_get("uv", uv)
+    return uv
 
 
 def forget_placements(objects):
