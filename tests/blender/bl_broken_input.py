@@ -50,8 +50,9 @@ def folded(k):
 def add_folded(name, at):
     """Two squares side by side, joined along an edge, with UVs folded over it."""
     mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (0, 1, 0)], [],
-                     [(0, 1, 4, 5), (1, 2, 3, 4)])
+    mesh.from_pydata(
+        [(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 4, 5), (1, 2, 3, 4)]
+    )
     mesh.materials.append(bpy.data.materials["Grey"])
     obj = bpy.data.objects.new(name, mesh)
     obj.location = (2 * at, 5, 0)
@@ -110,16 +111,20 @@ def irradiance_at(package, manifest, name, polygon):
     u, v = uv * instance["uv_scale"] + instance["uv_offset"]
     page = manifest["pages"][instance["page"]]
     x, y = int(u * page["width"]), int(v * page["height"])
-    light = exr.read_rgb(os.path.join(package, page["irradiance"]))[y - 1:y + 2, x - 1:x + 2]
-    validity = exr.read_exr(os.path.join(package, page["quality"]))["validity"][y - 1:y + 2, x - 1:x + 2]
+    light = exr.read_rgb(os.path.join(package, page["irradiance"]))[y - 1 : y + 2, x - 1 : x + 2]
+    validity = exr.read_exr(os.path.join(package, page["quality"]))["validity"][y - 1 : y + 2, x - 1 : x + 2]
     return float(light.mean()), float(validity.mean())
 
 
 def check_findings():
     """What can be seen before the bake is named before it."""
     found = [(f.culprit, f.text) for f in checks.check_scene(bpy.context)]
-    for culprit, words in (("Lost", "is missing"), ("Mirrored", "negative scale"),
-                           ("Turned Over", "negative scale"), ("Empty", "empty mesh")):
+    for culprit, words in (
+        ("Lost", "is missing"),
+        ("Mirrored", "negative scale"),
+        ("Turned Over", "negative scale"),
+        ("Empty", "empty mesh"),
+    ):
         assert any(c == culprit and words in t for c, t in found), (culprit, words, found)
 
 
@@ -127,8 +132,12 @@ def check_warnings(report):
     """The report names the object or material at fault, and no sound one."""
     found = [(w["culprit"], w["text"]) for w in report["warnings"]]
     shown = job.manager.last.warnings
-    for culprit, words in (("Lost Paint", "image 'Lost'"), ("Empty", "no faces"), ("Torn", "not finite"),
-                           ("Folded", "overlap")):
+    for culprit, words in (
+        ("Lost Paint", "image 'Lost'"),
+        ("Empty", "no faces"),
+        ("Torn", "not finite"),
+        ("Folded", "overlap"),
+    ):
         assert any(c == culprit and words in t for c, t in found), (culprit, words, found)
     assert any(c == "Stacked" and "overlap" in t for c, t in shown), shown
     assert not [c for c, _ in found if c in ("Sound", "Mirrored", "Grey")], found
@@ -140,8 +149,16 @@ def check_light(package):
         manifest = json.load(file)
     names = {i["name"] for i in manifest["instances"]}
     assert names == {"Sound", "Untextured", "Mirrored", "Turned Over", "Stacked", "Folded", "Torn"}, names
-    for name, polygon in (("Sound", 0), ("Untextured", 0), ("Mirrored", 0), ("Stacked", 0), ("Stacked", 1),
-                          ("Folded", 0), ("Folded", 1), ("Torn", 1)):
+    for name, polygon in (
+        ("Sound", 0),
+        ("Untextured", 0),
+        ("Mirrored", 0),
+        ("Stacked", 0),
+        ("Stacked", 1),
+        ("Folded", 0),
+        ("Folded", 1),
+        ("Torn", 1),
+    ):
         light, validity = irradiance_at(package, manifest, name, polygon)
         assert abs(light / SUN - 1) < 2e-3 and validity == 1.0, (name, polygon, light, validity)
     # Scaled by -1 along z a square stays where it was, with its front below, as Blender renders it.

@@ -46,8 +46,14 @@ def scene_state():
 def start():
     """A bake that would take minutes."""
     package, report = settings.output_paths(bpy.context.scene)
-    task = job.Job("Bake", bpy.context, job.bake_steps, package=package, report=report,
-                   overrides={"preset": "REFERENCE", "samples": 1 << 18, "bounces": 2})
+    task = job.Job(
+        "Bake",
+        bpy.context,
+        job.bake_steps,
+        package=package,
+        report=report,
+        overrides={"preset": "REFERENCE", "samples": 1 << 18, "bounces": 2},
+    )
     job.manager.start(task)
     return task
 
@@ -55,7 +61,7 @@ def start():
 def run_until(task, stage):
     """Steps a job until its worker is in a stage, or in a later one if that was too short to be seen."""
     while job.manager.step():
-        if task.worker is not None and task.status.stage in STAGES[STAGES.index(stage):]:
+        if task.worker is not None and task.status.stage in STAGES[STAGES.index(stage) :]:
             return True
         time.sleep(0.01)
     return False
@@ -91,7 +97,12 @@ def interrupt(stage, how, before, saved):
         job.manager.cancel()
     status = finish(task)
     wanted = ("failed", "signal 9") if how == "kill" else ("cancelled", "cancelled")
-    assert status.result == wanted[0] and wanted[1] in status.message, (stage, how, status.result, status.message)
+    assert status.result == wanted[0] and wanted[1] in status.message, (
+        stage,
+        how,
+        status.result,
+        status.message,
+    )
     check_end(task, before, state, folder)
     assert digest(os.path.dirname(bpy.data.filepath))[bpy.data.filepath] == saved
     bpy.ops.ajar.preview_toggle()
