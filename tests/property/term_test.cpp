@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -26,7 +27,8 @@ struct Options {
     const State* frozen = nullptr; ///< build this state without elements; null: build the elements
 };
 
-/// Two rooms joined by a doorway, a lamp in each, a sign, a door leaf, two toggles.
+/// Two rooms joined by a doorway, a lamp in each, a sign, a door leaf with a gap around it, a crate
+/// flush on the floor with a box flush on it.
 class Rooms {
 public:
     explicit Rooms(const Options& o) : o_(o) {
@@ -39,10 +41,10 @@ public:
         add(kit::box({-0.1f, 0.5f, -0.1f}, {0.1f, 2, 3.1f}, false), white_);
         add(kit::box({-0.1f, -0.5f, 2}, {0.1f, 0.5f, 3.1f}, false), white_);
         const uint32_t red = scene.diffuse({0.8f, 0.2f, 0.1f});
-        part(kDoor, false, kit::box({-0.05f, -0.5f, 0}, {0.05f, 0.5f, 2}, false), o.black_door && o.frozen != nullptr ? scene.diffuse({0, 0, 0}) : red);
-        if (o.pose) part(kDoor, true, kit::box({0.1f, 0.5f, 0}, {1.1f, 0.6f, 2}, false), red);
+        part(kDoor, false, kit::box({-0.05f, -0.47f, 0.03f}, {0.05f, 0.47f, 1.97f}, false), o.black_door && o.frozen != nullptr ? scene.diffuse({0, 0, 0}) : red);
+        if (o.pose) part(kDoor, true, kit::box({0.15f, 0.55f, 0.03f}, {1.1f, 0.65f, 1.97f}, false), red);
         part(kCrate, false, kit::box({1.5f, -0.5f, 0}, {2.2f, 0.3f, 0.9f}, false), scene.diffuse({0.1f, 0.7f, 0.2f}));
-        part(kBall, false, kit::box({2.0f, -0.2f, 1.2f}, {2.5f, 0.4f, 1.7f}, false), scene.diffuse({0.2f, 0.2f, 0.8f}));
+        part(kBall, false, kit::box({1.6f, -0.2f, 0.9f}, {2.1f, 0.2f, 1.4f}, false), scene.diffuse({0.2f, 0.2f, 0.8f}));
         lamp(kLampA, {-2, 0.3f, 2.5f}, 100.0f);
         lamp(kLampB, {2.6f, 0.1f, 2.6f}, 40.0f);
         sign();
@@ -51,6 +53,9 @@ public:
     }
     kit::Scene scene;
     std::vector<uint32_t> pages;
+    /// Pages of things that touch others: where they do, a bake with them moves positions out of the
+    /// other thing, which a bake that may hide either must not.
+    std::vector<uint32_t> touching;
 
 private:
     void add(const kit::MeshData& data, uint32_t material) {
@@ -60,6 +65,7 @@ private:
     /// A surface that is there while element is at 1 (open: open pose of a door), or closed leaf.
     void part(uint32_t element, bool open, const kit::MeshData& data, uint32_t material) {
         const bool when = element != kDoor || open;
+        if (element == kCrate || element == kBall) touching.push_back(static_cast<uint32_t>(pages.size()));
         if (o_.frozen != nullptr) {
             // Its page stays, so that pages of all scenes match.
             if (o_.frozen->there(element) == when) add(data, material);
@@ -141,7 +147,7 @@ Agreement compare(const Options& options, const State& state) {
     for (const uint32_t page : other.pages) {
         const kit::Layer e = whole.layer(AJAR_LAYER_IRRADIANCE, page), validity = whole.layer(AJAR_LAYER_VALIDITY, page);
         for (size_t i = 0; i < e.data.size(); ++i, ++next) {
-            if (validity.data[i / 3] != 1.0f) continue;
+            if (validity.data[i / 3] != 1.0f || std::count(other.touching.begin(), other.touching.end(), page) != 0) continue;
             total += sum[next];
             expected += e.data[i];
             squares += (sum[next] - e.data[i]) * (sum[next] - e.data[i]);
@@ -151,21 +157,19 @@ Agreement compare(const Options& options, const State& state) {
     return {total / expected, std::sqrt(squares / count) / (expected / count)};
 }
 
-class Terms : public ::testing::TestWithParam<int> {};
-
-TEST_P(Terms, BasePlusTermsIsTheBakeOfAState) {
-    const int i = GetParam();
-    const State state{{i & 1 ? 0.7f : 0.0f, i & 2 ? 1.5f : 0.2f, i & 4 ? 2.0f : 0.0f, i & 8 ? 1.0f : 0.0f, i & 16 ? 1.0f : 0.0f, i & 32 ? 1.0f : 0.0f}};
-    for (const bool pose : {false, true}) {
-        Options o;
-        o.pose = pose;
-        const Agreement a = compare(o, state);
-        EXPECT_NEAR(a.mean_ratio, 1.0, 0.006) << pose;
-        EXPECT_LT(a.rms, 0.12) << pose;
+TEST(Terms, BasePlusTermsIsTheBakeOfAState) {
+    // One process for all states: each option's terms are baked once.
+    for (const int i : {0, 1, 7, 9, 23, 24, 39, 47, 59, 63}) {
+        const State state{{i & 1 ? 0.7f : 0.0f, i & 2 ? 1.5f : 0.2f, i & 4 ? 2.0f : 0.0f, i & 8 ? 1.0f : 0.0f, i & 16 ? 1.0f : 0.0f, i & 32 ? 1.0f : 0.0f}};
+        for (const bool pose : {false, true}) {
+            Options o;
+            o.pose = pose;
+            const Agreement a = compare(o, state);
+            EXPECT_NEAR(a.mean_ratio, 1.0, 0.006) << "state " << i << (pose ? " with pose" : "");
+            EXPECT_LT(a.rms, 0.12) << "state " << i << (pose ? " with pose" : "");
+        }
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(States, Terms, ::testing::Values(0, 1, 7, 9, 23, 24, 39, 47, 59, 63));
 
 TEST(Terms, ABlackDoorReflectsNothingWhenClosed) {
     Options o;

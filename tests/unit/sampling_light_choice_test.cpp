@@ -55,8 +55,8 @@ struct Hall {
         }
     }
     LightChoice choice(LightRoles roles) {
-        LightChoice c(*emitters, roles);
-        c.begin(*scene, *tracer, receivers, kTile, 5);
+        LightChoice c(*emitters, roles, emitters->of_set(kNoElement));
+        c.begin(*tracer, receivers, kTile, 5);
         return c;
     }
 };
@@ -188,8 +188,8 @@ TEST(LightChoice, WithoutLightsThereIsNothingToPick) {
     receivers.texel = {0};
     receivers.frame.resize(1);
     receivers.positions = {Vec3(0, 0, 0.001f)};
-    LightChoice choice(emitters, LightRoles::all);
-    choice.begin(scene, tracer, receivers, {0, 1}, 1);
+    LightChoice choice(emitters, LightRoles::all, emitters.of_set(kNoElement));
+    choice.begin(tracer, receivers, {0, 1}, 1);
     EXPECT_TRUE(choice.empty());
 }
 

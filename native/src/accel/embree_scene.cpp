@@ -71,6 +71,53 @@ RTCRayHit make_ray(const Ray& r, uint32_t mask) {
 // sure, even at grazing angles where a moved origin would meet it again.
 float next_tnear(float t) { return t * (1.0f + 4.0f * 0x1p-23f) + 1e-20f; }
 
+namespace {
+
+#ifdef AJAR_EMBREE4
+constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+
+/// Where all_hits leaves what it meets. The tracer's own context must come first.
+struct Collector {
+#ifdef AJAR_EMBREE4
+    RTCRayQueryContext context;
+#else
+    RTCIntersectContext context;
+#endif
+    const std::vector<uint32_t>* first;
+    std::vector<Hit>* out;
+};
+
+/// Notes the hit and turns it down, so that the ray goes on.
+void collect(const RTCFilterFunctionNArguments* a) {
+    const auto* c = reinterpret_cast<const Collector*>(a->context);
+    const uint32_t triangle = RTCHitN_primID(a->hit, a->N, 0) + (*c->first)[RTCHitN_geomID(a->hit, a->N, 0)];
+    const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) + RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
+                       RTCRayN_dir_z(a->ray, a->N, 0) * RTCHitN_Ng_z(a->hit, a->N, 0);
+    c->out->push_back({triangle, RTCHitN_u(a->hit, a->N, 0), RTCHitN_v(a->hit, a->N, 0), RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
+    a->valid[0] = 0;
+}
+
+void call_collect(RTCScene scene, RTCRayHit* ray, Collector& c) {
+#ifdef AJAR_EMBREE4
+    rtcInitRayQueryContext(&c.context);
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = static_cast<RTCRayQueryFlags>(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
+    arguments.context = &c.context;
+    arguments.filter = collect;
+    rtcIntersect1(scene, ray, &arguments);
+#else
+    rtcInitIntersectContext(&c.context);
+    c.context.filter = collect;
+    rtcIntersect1(scene, &c.context, ray);
+#endif
+}
+
+} // namespace
+
 void RayPacket::prepare(uint32_t ray_mask) {
     for (uint32_t i = 0; i < kLanes; ++i) {
         tnear[i] = time[i] = 0.0f;
@@ -98,6 +145,9 @@ struct Tracer::Impl {
         if (vertices == nullptr || indices == nullptr) throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer");
         std::memcpy(vertices, s.positions.data(), s.positions.size() * sizeof(Vec3));
         for (uint32_t t = begin; t < end; ++t) std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
+#ifdef AJAR_EMBREE4
+        rtcSetGeometryEnableFilterFunctionFromArguments(g, true);
+#endif
         rtcSetGeometryMask(g, s.ray_mask(s.triangles[begin]));
         rtcCommitGeometry(g);
         rtcAttachGeometry(scene, g);
@@ -110,7 +160,8 @@ Tracer::Tracer(const Snapshot& s) : scene_(s), impl_(std::make_unique<Impl>()), 
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
     impl_->scene = rtcNewScene(impl_->device);
-    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+    // Only all_hits needs the filter, and only switchable surfaces need all_hits.
+    rtcSetSceneFlags(impl_->scene, s.has_switches() ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag) : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
     const auto count = static_cast<uint32_t>(s.triangles.size());
     for (uint32_t begin = 0, end; begin < count; begin = end) {
@@ -142,6 +193,16 @@ Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
     const uint32_t triangle = q.hit.primID + impl_->first[q.hit.geomID];
     const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
     return {triangle, q.hit.u, q.hit.v, q.ray.tfar, (side > 0.0f) != scene_.triangles[triangle].mirrored};
+}
+
+void Tracer::all_hits(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {
+    out.clear();
+    RTCRayHit q = make_ray(ray, mask);
+    Collector c{{}, &impl_->first, &out};
+    call_collect(impl_->scene, &q, c);
+    std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+    out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }), out.end());
+    for (Hit& h : out) h.back = h.back != scene_.triangles[h.triangle].mirrored;
 }
 
 Vec3 Tracer::tint(Ray ray) const {

@@ -4,6 +4,7 @@
 #include "accel/ray.h"
 
 #include <memory>
+#include <vector>
 
 namespace ajar {
 
@@ -23,6 +24,8 @@ public:
     /// Lanes that are blocked by an opaque surface get tfar = -infinity.
     void occluded(const int32_t* valid, RayPacket& rays) const;
     Hit intersect(const Ray& ray, uint32_t mask) const;
+    /// Every surface of mask along the ray, each once, nearest first; also those in one plane.
+    void all_hits(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const;
     /// What is left of light along a shadow ray: 0 behind anything opaque, else the product of
     /// the transmittances in between.
     Vec3 transmittance(const Ray& ray) const;

@@ -44,6 +44,7 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
     out.edge_y = (eb * a.x - ea * b.x) / det;
     out.center = origin + out.edge_x * c.x + out.edge_y * c.y;
     out.normal = scene.geometric_normal(triangle);
+    out.presence = scene.presence(triangle);
     return out;
 }
 

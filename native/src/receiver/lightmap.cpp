@@ -200,7 +200,7 @@ void Builder::keep_one_side(uint32_t r) {
     const uint32_t n = out.positions_per_texel;
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
     const auto sees = [&](uint32_t a, uint32_t b) {
-        return tracer.intersect({p[a] + up, p[b] - p[a], 0.0f, 1.0f}, kMaskShadowOpaque).triangle == kMiss;
+        return tracer.intersect({p[a] + up, p[b] - p[a], 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
     };
     uint32_t seen = 1;
     for (uint32_t b = 1; b < n; ++b) seen += sees(0, b);
@@ -225,7 +225,7 @@ void Builder::find_sharing(const Tile& tile) {
         out.shares[r] = 1;
         for (uint32_t q = begin; q < end; ++q) {
             const Vec3 to = out.origins(q)[0] + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
-            if (q != r && tracer.intersect({p, to, 0.0f, 1.0f}, kMaskShadowOpaque).triangle != kMiss) out.shares[r] = 0;
+            if (q != r && tracer.intersect({p, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss) out.shares[r] = 0;
         }
     }
 }

@@ -17,6 +17,7 @@ float area_of(const BrightTexel& t) { return glm::length(glm::cross(t.edge_x, t.
 
 bool joins(const BrightTexel& first, const BrightTexel& next) {
     const float span = kClusterSpan * glm::length(first.edge_x);
+    if (first.presence.element != next.presence.element || first.presence.state != next.presence.state) return false;
     return glm::dot(first.normal, next.normal) > kClusterNormal && glm::length(next.center - first.center) < span;
 }
 
@@ -50,6 +51,7 @@ void EmitterSet::add_bright_cluster(uint32_t first, uint32_t count) {
         c.radius = std::max(c.radius, glm::distance(t.center, c.center) + half);
     }
     c.axis = normalize_or(c.axis, bright_[first].normal);
+    c.presence = bright_[first].presence;
     for (uint32_t i = first; i < first + count; ++i) {
         bright_index_[bright_[i].texel] = static_cast<uint32_t>(bright_entries_.size());
         bright_entries_.push_back({this->count(), luminance(bright_[i].radiance) / c.power});

@@ -97,7 +97,8 @@ std::vector<uint32_t> EmitterSet::of_set(uint32_t set) const {
 }
 
 Presence EmitterSet::presence(uint32_t e) const {
-    return emitters_[e].kind == Kind::cluster ? clusters_[emitters_[e].index].presence : Presence{};
+    const Kind kind = emitters_[e].kind;
+    return kind == Kind::cluster || kind == Kind::bright ? clusters_[emitters_[e].index].presence : Presence{};
 }
 
 void EmitterSet::split(uint32_t first, uint32_t count) {

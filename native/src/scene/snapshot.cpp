@@ -5,9 +5,10 @@ namespace ajar {
 
 uint32_t Snapshot::ray_mask(const Triangle& t) const {
     const uint32_t visibility = instances[t.instance].visibility;
+    const bool is_switch = instances[t.instance].element != kNoElement;
     const uint32_t fixed = materials[t.material].transmits ? kMaskShadowTransmissive : kMaskShadowOpaque;
-    const uint32_t shadow = instances[t.instance].element != kNoElement ? kMaskShadowSwitch : fixed;
-    return (visibility & AJAR_VISIBLE_GATHER ? kMaskGather : 0u) | (visibility & AJAR_VISIBLE_SHADOW ? shadow : 0u);
+    const uint32_t shadow = is_switch ? kMaskShadowSwitch : fixed, gather = is_switch ? kMaskGatherSwitch : kMaskGather;
+    return (visibility & AJAR_VISIBLE_GATHER ? gather : 0u) | (visibility & AJAR_VISIBLE_SHADOW ? shadow : 0u);
 }
 
 bool Snapshot::has_switches() const {

@@ -51,7 +51,15 @@ struct Triangle {
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
-enum RayMask : uint32_t { kMaskGather = 1, kMaskShadowOpaque = 2, kMaskShadowTransmissive = 4, kMaskShadowSwitch = 8 };
+enum RayMask : uint32_t {
+    kMaskGather = 1,
+    kMaskShadowOpaque = 2,
+    kMaskShadowTransmissive = 4,
+    kMaskShadowSwitch = 8, ///< doors and toggles are groups of their own
+    kMaskGatherSwitch = 16,
+    kMaskGatherAll = kMaskGather | kMaskGatherSwitch,
+    kMaskWall = kMaskShadowOpaque | kMaskShadowSwitch ///< what parts the light of neighbouring texels
+};
 
 /// When a switchable surface is there: while element is at state 1 or at state 0.
 struct Presence {

@@ -48,7 +48,7 @@ template <class Sink> struct Gatherer {
         alignas(32) int32_t valid[kLanes];
         Vec3 local_direction[kLanes];
         float weight[kLanes];
-        packet.prepare(kMaskGather);
+        packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
         const uint32_t k_count = g.receivers.positions_per_texel;
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
             const size_t i = size_t{stratum} * kTileReceivers + first + lane;
@@ -91,17 +91,50 @@ template <class Sink> struct Gatherer {
     /// The general case: emission, layers of transmissive and switchable surfaces, back faces.
     void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers) {
         while (layers-- > 0) {
-            if (hit.triangle == kMiss) return sky(ray.direction, through, from);
-            const uint8_t f = g.surfaces.flags(hit.triangle);
-            if (Sink::kSwitches && (f & SurfaceTable::kSwitch) != 0) {
-                if (!meet_switch(ray, hit, through, from, layers)) return;
-            } else if (!meet_fixed(ray, hit, f, through, from, layers)) {
-                return;
+            std::vector<Hit> switches;
+            if (Sink::kSwitches && hit.triangle != kMiss && (g.surfaces.flags(hit.triangle) & SurfaceTable::kSwitch) != 0) {
+                ++rays;
+                hit = g.tracer.intersect(ray, kMaskGather);
+                Ray part = ray;
+                if (hit.triangle != kMiss) part.tfar = hit.t;
+                g.tracer.all_hits(part, kMaskGatherSwitch, switches);
             }
+            if (switches.empty() ? !end_segment(ray, hit, through, from, layers) : !pass_switches(ray, switches, 0, hit, through, from, layers)) return;
             ray.tnear = next_tnear(hit.t);
             ++rays;
-            hit = g.tracer.intersect(ray, kMaskGather);
+            hit = g.tracer.intersect(ray, kMaskGatherAll);
         }
+    }
+
+    /// What lies at the end of a stretch without switchable surfaces; true if the ray goes on.
+    bool end_segment(const Ray& ray, const Hit& hit, Through& through, const Origin& from, int layers) {
+        if (hit.triangle == kMiss) {
+            sky(ray.direction, through, from);
+            return false;
+        }
+        return meet_fixed(ray, hit, g.surfaces.flags(hit.triangle), through, from, layers);
+    }
+
+    /// Switchable surfaces from number next on, then the fixed hit behind them. A way that goes on
+    /// behind a surface which is there is followed to its end here; true if the plain one goes on.
+    bool pass_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through, const Origin& from, int layers) {
+        if constexpr (Sink::kSwitches) {
+            for (; next < switches.size(); ++next) {
+                const Hit& hit = switches[next];
+                const Presence p = g.scene.presence(hit.triangle);
+                const uint8_t f = g.surfaces.flags(hit.triangle);
+                Through there = through;
+                if (there.condition.require(p.element, p.state) && !is_inside(hit, f) && shine(ray, hit, f, there, from, layers) &&
+                    pass_switches(ray, switches, next + 1, end, there, from, layers)) {
+                    Ray behind = ray;
+                    behind.tnear = next_tnear(end.t);
+                    ++rays;
+                    walk(behind, g.tracer.intersect(behind, kMaskGatherAll), there, from, layers);
+                }
+                if (!through.condition.require(p.element, !p.state)) return false;
+            }
+        }
+        return end_segment(ray, end, through, from, layers);
     }
 
     /// Light of a surface that is always there; true if some goes through it.
@@ -111,24 +144,6 @@ template <class Sink> struct Gatherer {
             return false;
         }
         return shine(ray, hit, f, through, from, layer);
-    }
-
-    /// A surface that may be there: its light under the condition that it is, and what lies behind
-    /// it under the condition that it is not. True if the latter can be.
-    bool meet_switch(const Ray& ray, const Hit& hit, Through& through, const Origin& from, int layers) {
-        if constexpr (Sink::kSwitches) {
-            const Presence p = g.scene.presence(hit.triangle);
-            const uint8_t f = g.surfaces.flags(hit.triangle);
-            Through there = through;
-            if (there.condition.require(p.element, p.state) && !is_inside(hit, f) && shine(ray, hit, f, there, from, layers)) {
-                Ray behind = ray;
-                behind.tnear = next_tnear(hit.t);
-                ++rays;
-                walk(behind, g.tracer.intersect(behind, kMaskGather), there, from, layers);
-            }
-            return through.condition.require(p.element, !p.state);
-        }
-        return false;
     }
 
     static bool is_inside(const Hit& hit, uint8_t f) { return hit.back && (f & (SurfaceTable::kOneSided | SurfaceTable::kSolid)) != 0; }
@@ -233,31 +248,43 @@ template <class Sink> struct Gatherer {
     void path(Ray ray, Through through, uint32_t seed, int depth, int layers) {
         while (layers-- > 0) {
             ++rays;
-            const Hit hit = g.tracer.intersect(ray, kMaskGather);
-            if (hit.triangle == kMiss) {
-                if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit()) sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
-                return;
-            }
-            Through behind = through;
+            const Hit end = g.tracer.intersect(ray, kMaskGather);
             if constexpr (Sink::kSwitches) {
-                const Presence p = g.scene.presence(hit.triangle);
-                if (p.element != kNoElement) {
-                    Through there = through;
-                    if (there.condition.require(p.element, p.state) && path_shine(ray, hit, there, seed, depth, layers)) {
-                        Ray on = ray;
-                        on.tnear = next_tnear(hit.t);
-                        path(on, there, hash_combine(seed, 0x55u), depth, layers);
-                    }
-                    if (!behind.condition.require(p.element, !p.state)) return;
-                } else if (!path_shine(ray, hit, behind, seed, depth, layers)) {
-                    return;
-                }
-            } else if (!path_shine(ray, hit, behind, seed, depth, layers)) {
+                std::vector<Hit> switches;
+                Ray part = ray;
+                if (end.triangle != kMiss) part.tfar = end.t;
+                g.tracer.all_hits(part, kMaskGatherSwitch, switches);
+                if (!path_switches(ray, switches, 0, end, through, seed, depth, layers)) return;
+            } else if (!path_end(ray, end, through, seed, depth, layers)) {
                 return;
             }
-            through = behind;
-            ray.tnear = next_tnear(hit.t);
+            ray.tnear = next_tnear(end.t);
         }
+    }
+
+    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layers) {
+        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, layers);
+        if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit()) sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
+        return false;
+    }
+
+    /// As pass_switches, along such a path.
+    bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through, uint32_t seed, int depth, int layers) {
+        if constexpr (Sink::kSwitches) {
+            for (; next < switches.size(); ++next) {
+                const Presence p = g.scene.presence(switches[next].triangle);
+                const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
+                Through there = through;
+                if (there.condition.require(p.element, p.state) && path_shine(ray, switches[next], there, own_seed, depth, layers) &&
+                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers)) {
+                    Ray behind = ray;
+                    behind.tnear = next_tnear(end.t);
+                    path(behind, there, own_seed, depth, layers);
+                }
+                if (!through.condition.require(p.element, !p.state)) return false;
+            }
+        }
+        return path_end(ray, end, through, seed, depth, layers);
     }
 
     /// Light of one surface on such a path; true if some from behind gets through.

@@ -94,24 +94,33 @@ private:
     TermSums& sums_;
 };
 
+/// Light that passes switchable surfaces: each is absent, or there and perhaps lets some through.
+template <class Sink, class Emit> void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_t next, typename Sink::Through through, Emit&& emit) {
+    for (; next < hits.size(); ++next) {
+        const Hit& hit = hits[next];
+        const Presence p = scene.presence(hit.triangle);
+        auto there = through;
+        if (scene.materials[scene.triangles[hit.triangle].material].transmits && there.condition.require(p.element, p.state)) {
+            there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
+            if (max_component(there.color) > 0.0f) through_switches<Sink>(scene, hits, next + 1, there, emit);
+        }
+        if (!through.condition.require(p.element, !p.state)) return;
+    }
+    emit(through);
+}
+
 /// Follows a shadow ray that fixed opaque surfaces leave free through tinted and switchable ones.
 /// Calls emit(through) for each way in which light gets along it.
-template <class Sink, class Emit> void through_shadow(const Snapshot& scene, const Tracer& tracer, Ray ray, typename Sink::Through through, Emit&& emit) {
-    if constexpr (Sink::kSwitches) {
-        for (Hit hit; (hit = tracer.intersect(ray, kMaskShadowSwitch)).triangle != kMiss;) {
-            const Presence p = scene.presence(hit.triangle);
-            ray.tnear = next_tnear(hit.t);
-            auto there = through;
-            if (there.condition.require(p.element, p.state)) {
-                there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
-                if (max_component(there.color) > 0.0f) through_shadow<Sink>(scene, tracer, ray, there, emit);
-            }
-            if (!through.condition.require(p.element, !p.state)) return;
-        }
-        ray.tnear = 0.0f;
-    }
+template <class Sink, class Emit> void through_shadow(const Snapshot& scene, const Tracer& tracer, const Ray& ray, typename Sink::Through through, Emit&& emit) {
     if (tracer.has_transmissive()) through.color *= tracer.tint(ray);
-    if (max_component(through.color) > 0.0f) emit(through);
+    if (!(max_component(through.color) > 0.0f)) return;
+    if constexpr (Sink::kSwitches) {
+        thread_local std::vector<Hit> hits;
+        tracer.all_hits(ray, kMaskShadowSwitch, hits);
+        through_switches<Sink>(scene, hits, 0, through, emit);
+    } else {
+        emit(through);
+    }
 }
 
 } // namespace ajar
