@@ -19,6 +19,7 @@ NAME = "ajar"
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 DONE, FAILED, CANCELLED = 0, 1, 2
 PRESETS = ("draft", "preview", "production", "reference")
+COMBINATIONS = ("none", "auto", "all")
 
 
 class BatchError(Exception):
@@ -44,6 +45,9 @@ def parse(arguments):
     parser.add_argument("--time-limit", type=_positive, metavar="S", help="seconds for the whole bake")
     parser.add_argument("--threads", type=_count_or_none, metavar="N", help="worker threads, 0 for all")
     parser.add_argument("--seed", type=_count_or_none, metavar="N", help="seed of the random numbers")
+    parser.add_argument(
+        "--combinations", choices=COMBINATIONS, type=str.lower, help="products of elements to bake"
+    )
     parser.add_argument(
         "--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers"
     )
@@ -100,6 +104,7 @@ def overrides(options):
         "threads": options.threads,
         "seed": options.seed,
         "texels_per_meter": options.density,
+        "combinations": options.combinations.upper() if options.combinations else None,
     }
     return {name: value for name, value in values.items() if value is not None}
 

@@ -16,7 +16,7 @@ from bpy.props import (
 )
 from bpy.types import PropertyGroup
 
-from . import fields
+from . import fields, light_sets
 
 _HIDDEN = {"HIDDEN"}
 _NUMBERS = {"int": IntProperty, "float": FloatProperty}
@@ -51,7 +51,8 @@ def _properties(rows):
 class AJAR_LightSet(PropertyGroup):
     """Lights that share one weight at run time."""
 
-    name: StringProperty(name="Name", default="Set")
+    name: StringProperty(name="Name", default="Set", update=light_sets.keep_name)
+    known_name: StringProperty(options=_HIDDEN, description="Name that objects are tagged with")
     weight: FloatProperty(
         name="Weight",
         default=1.0,

@@ -11,6 +11,8 @@ def migrate(scene):
     """Applies the steps that a scene saved by an older version lacks. Files of newer versions are
     left alone."""
     saved = scene.ajar.data_version
+    for entry in scene.ajar.light_sets if scene.library is None else ():
+        entry.known_name = entry.known_name or entry.name
     for version, step in _STEPS:
         if 0 < saved < version:
             step(scene)

@@ -18,7 +18,7 @@ class Tags:
     """The movable and light set tags of a scene and of the collections that it instances."""
 
     def __init__(self, scene):
-        self.objects = _reachable(scene)
+        self.objects, self.collections = reachable(scene)
         self._collections = _collections_by_object()
         self._parents = _parents_by_collection()
         self._poses, self.shared_poses = {}, []
@@ -26,11 +26,8 @@ class Tags:
             self._note_pose(owner)
 
     def owners(self):
-        """Tagged objects, then tagged collections with members here, in order of name."""
-        found = [o for o in self.objects.values() if kind_of(o)]
-        held = {c.name_full: c for o in self.objects.values() for c in self._around(o)}
-        found += sorted((c for c in held.values() if kind_of(c)), key=lambda c: c.name_full)
-        return found
+        """Tagged objects, then tagged collections, in order of name."""
+        return [o for o in (*self.objects.values(), *self.collections.values()) if kind_of(o)]
 
     def part(self, obj):
         """Part that an original object is of, or None."""
@@ -98,17 +95,22 @@ def kind_of(owner):
     return KINDS.get(ajar(owner, "movable"))
 
 
-def _reachable(scene):
-    """{name: object} of the scene and of the collections that it instances, in order of name."""
-    found, waiting = {}, list(scene.objects)
+def reachable(scene):
+    """({name: object}, {name: collection}) of the scene and of the collections that it instances, in
+    order of name."""
+    objects, found, waiting = {}, [], [scene.collection]
     while waiting:
-        obj = waiting.pop()
-        if obj.name_full in found:
+        collection = waiting.pop()
+        if collection in found:
             continue
-        found[obj.name_full] = obj
-        if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
-            waiting += obj.instance_collection.all_objects
-    return dict(sorted(found.items()))
+        found.append(collection)
+        waiting += collection.children
+        for obj in collection.objects:
+            objects[obj.name_full] = obj
+            if obj.instance_type == "COLLECTION" and obj.instance_collection is not None:
+                waiting.append(obj.instance_collection)
+    collections = {c.name_full: c for c in found[1:]}
+    return dict(sorted(objects.items())), dict(sorted(collections.items()))
 
 
 def _collections_by_object():

@@ -23,6 +23,7 @@ def render_view(context, always=frozenset()):
     """Yields (depsgraph, names of render-visible objects) as a render would see the scene. Objects
     named in always count as visible."""
     view_layer = context.view_layer
+    view_layer.update()  # scripts may just have linked objects
     undo = []
     try:
         visible = set()

@@ -2,9 +2,16 @@
 """Operators, one file per concept."""
 import bpy
 
-from . import bake, check, elements, preview, uvs
+from . import bake, check, light_sets, movables, preview, uvs
 
-CLASSES = (*bake.CLASSES, *check.CLASSES, *elements.CLASSES, *preview.CLASSES, *uvs.CLASSES)
+CLASSES = (
+    *bake.CLASSES,
+    *check.CLASSES,
+    *light_sets.CLASSES,
+    *movables.CLASSES,
+    *preview.CLASSES,
+    *uvs.CLASSES,
+)
 
 
 def register():

@@ -9,6 +9,7 @@ from . import common
 
 class AJAR_OT_bake(common.JobOperator, Operator):
     """Bake the lightmaps of this scene. Blender stays usable; Esc cancels"""
+
     bl_idname = "ajar.bake"
     bl_label = "Bake Lightmaps"
 
@@ -24,12 +25,15 @@ class AJAR_OT_bake(common.JobOperator, Operator):
             return {"CANCELLED"}
         package, report = settings.output_paths(context.scene)
         keep = context.scene.ajar.keep_uvs
-        return self.start(context, job.Job("Bake", context, job.bake_steps,
-                                           package=package, report=report, keep_existing=keep))
+        return self.start(
+            context,
+            job.Job("Bake", context, job.bake_steps, package=package, report=report, keep_existing=keep),
+        )
 
 
 class AJAR_OT_cancel(Operator):
     """Cancel the running bake; the last finished one stays"""
+
     bl_idname = "ajar.cancel"
     bl_label = "Cancel Bake"
 
@@ -48,6 +52,7 @@ class AJAR_OT_cancel(Operator):
 class AJAR_OT_clear(Operator):
     """Remove the preview, the baked images and the lightmap UV layers from this file. Settings, \
 tags and files on disk stay"""
+
     bl_idname = "ajar.clear"
     bl_label = "Clear Bake"
     bl_options = {"REGISTER", "UNDO"}

@@ -10,6 +10,7 @@ _ICONS = {"ERROR": "CANCEL", "WARNING": "ERROR"}
 
 class AJAR_OT_check(Operator):
     """List what would stop a bake or make it look wrong, with remedies"""
+
     bl_idname = "ajar.check"
     bl_label = "Check Scene"
 
@@ -22,8 +23,9 @@ class AJAR_OT_check(Operator):
         if not findings:
             self.report({"INFO"}, "Ready to bake")
         if not bpy.app.background and context.window:
-            context.window_manager.popup_menu(lambda menu, _: _draw(menu.layout, findings),
-                                              title="Check", icon="CHECKMARK")
+            context.window_manager.popup_menu(
+                lambda menu, _: _draw(menu.layout, findings), title="Check", icon="CHECKMARK"
+            )
         return {"FINISHED"}
 
 

@@ -70,8 +70,9 @@ class JobOperator:
             job.manager.cancel()
             return {"RUNNING_MODAL"}
         if event.type == "TIMER":
-            context.workspace.status_text_set(f"{status.title}: {status.stage} "
-                                              f"{status.fraction:.0%} | Esc: Cancel")
+            context.workspace.status_text_set(
+                f"{status.title}: {status.stage} " f"{status.fraction:.0%} | Esc: Cancel"
+            )
         return {"PASS_THROUGH"}
 
     def cancel(self, context):

@@ -8,6 +8,7 @@ from . import common
 
 class AJAR_OT_preview_toggle(Operator):
     """Show the scene with its baked light, or go back to the materials and lights as they were"""
+
     bl_idname = "ajar.preview_toggle"
     bl_label = "Preview Baked Light"
     bl_options = {"REGISTER", "UNDO"}

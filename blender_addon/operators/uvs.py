@@ -10,12 +10,15 @@ from . import common
 class AJAR_OT_prepare_uvs(common.JobOperator, Operator):
     """Unwrap and pack the lightmap UVs (layer AjarLightmap) of all objects that get a lightmap. \
 Other UV layers stay as they are"""
+
     bl_idname = "ajar.prepare_uvs"
     bl_label = "Prepare Lightmap UVs"
 
     keep_existing: BoolProperty(
-        name="Keep Existing", default=False,
-        description="Keep the charts of existing AjarLightmap layers and only pack them anew")
+        name="Keep Existing",
+        default=False,
+        description="Keep the charts of existing AjarLightmap layers and only pack them anew",
+    )
 
     @classmethod
     def poll(cls, context):
@@ -33,8 +36,9 @@ Other UV layers stay as they are"""
         if problems:
             self.report({"ERROR"}, "\n".join(map(str, problems)))
             return {"CANCELLED"}
-        return self.start(context, job.Job("Lightmap UVs", context, job.layout_steps,
-                                           keep_existing=self.keep_existing))
+        return self.start(
+            context, job.Job("Lightmap UVs", context, job.layout_steps, keep_existing=self.keep_existing)
+        )
 
 
 CLASSES = (AJAR_OT_prepare_uvs,)

@@ -25,6 +25,17 @@ SCENE = {
     "output_dir",
     "light_sets",
     "combinations",
+    "term_threshold",
+}
+LIGHT_SET = {"name", "weight", "color", "combine"}
+COLLECTION = {
+    "light_set",
+    "movable",
+    "open_pose",
+    "bounce_when_closed",
+    "openness",
+    "presence",
+    "combine",
 }
 OBJECT = {
     "light_role",
@@ -36,6 +47,7 @@ OBJECT = {
     "bounce_when_closed",
     "openness",
     "presence",
+    "combine",
 }
 OPERATORS = (
     "bake",
@@ -46,7 +58,10 @@ OPERATORS = (
     "light_set_add",
     "light_set_remove",
     "light_set_assign",
+    "light_set_per_light",
+    "light_set_import",
     "door_mark",
+    "toggle_mark",
     "clear",
 )
 ENUMS = {
@@ -55,6 +70,7 @@ ENUMS = {
     ("object", "light_role"): ["PRIMARY", "STATIC", "OFF"],
     ("object", "surface"): ["AUTO", "LIGHTMAP", "LIGHT_GRID", "OCCLUDER", "IGNORE"],
     ("object", "movable"): ["FIXED", "DOOR", "TOGGLE"],
+    ("collection", "movable"): ["FIXED", "DOOR", "TOGGLE"],
     ("world", "sky_role"): ["BAKED", "OFF"],
 }
 
@@ -75,7 +91,14 @@ def load_again():
 def check_names():
     """Property groups and operators have exactly the public names."""
     scene, cube = fresh()
-    owners = {"scene": scene.ajar, "object": cube.ajar, "world": scene.world.ajar}
+    owners = {
+        "scene": scene.ajar,
+        "object": cube.ajar,
+        "world": scene.world.ajar,
+        "collection": bpy.data.collections[0].ajar,
+    }
+    assert set(owners["collection"].bl_rna.properties.keys()) >= COLLECTION
+    assert set(scene.ajar.light_sets.add().bl_rna.properties.keys()) >= LIGHT_SET
     assert set(scene.ajar.bl_rna.properties.keys()) >= SCENE
     assert set(cube.ajar.bl_rna.properties.keys()) >= OBJECT
     for (owner, name), items in ENUMS.items():

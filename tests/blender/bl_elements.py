@@ -11,13 +11,13 @@ import jsonschema
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support.addon import ROOT, load_addon  # noqa: E402
+from support.elements import add, collection, glow, lamp, light_set, quad, run_tests  # noqa: E402
 
 ADDON = load_addon()
 snapshot = importlib.import_module("ajar.extract.snapshot")
 layout_module = importlib.import_module("ajar.extract.layout")
 settings = importlib.import_module("ajar.settings")
 model = importlib.import_module("ajar.model")
-SQUARE = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
 
 
 class Shot:
@@ -61,56 +61,6 @@ class Shot:
     def warned(self, culprit, part):
         """Whether a warning about culprit says part."""
         return any(c == culprit and part in t for c, t in self.result.warnings)
-
-
-def quad(name, parent=None, collection=None, **options):
-    """A unit square without a lightmap; options are attributes of the object."""
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(SQUARE[0], [], SQUARE[1])
-    obj = add(name, mesh, parent, collection, **options)
-    obj.ajar.surface = "OCCLUDER"
-    return obj
-
-
-def add(name, data=None, parent=None, collection=None, **options):
-    """An object of some data."""
-    obj = bpy.data.objects.new(name, data)
-    obj.parent = parent
-    for key, value in options.items():
-        setattr(obj, key, value)
-    (collection or bpy.context.scene.collection).objects.link(obj)
-    return obj
-
-
-def lamp(name, light_set="", parent=None, collection=None):
-    """A static point lamp."""
-    obj = add(name, bpy.data.lights.new(name, "POINT"), parent, collection)
-    obj.ajar.light_role, obj.ajar.light_set = "STATIC", light_set
-    return obj
-
-
-def glow(obj):
-    """Makes an object emit."""
-    material = bpy.data.materials.new("Glow")
-    material.use_nodes = True
-    tree = material.node_tree
-    shader = tree.nodes.new("ShaderNodeEmission")
-    tree.links.new(shader.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-    obj.data.materials.append(material)
-    return obj
-
-
-def collection(name, parent=None):
-    """A collection of the scene."""
-    made = bpy.data.collections.new(name)
-    (parent or bpy.context.scene.collection).children.link(made)
-    return made
-
-
-def light_set(name, weight=1.0, combine=True):
-    """An entry of the scene's list."""
-    entry = bpy.context.scene.ajar.light_sets.add()
-    entry.name, entry.weight, entry.combine = name, weight, combine
 
 
 # ---- light sets -------------------------------------------------------------------------------
@@ -309,17 +259,4 @@ def test_settings():
     assert found["combinations"] == "ALL" and found["term_threshold"] == 0.25
 
 
-def main():
-    """Runs the tests named behind '--', or all."""
-    wanted = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    for name, function in list(globals().items()):
-        if name.startswith("test_") and (not wanted or name in wanted):
-            bpy.ops.wm.read_factory_settings(use_empty=True)
-            load_addon()
-            if not hasattr(bpy.types.Scene, "ajar"):
-                ADDON.register()
-            function()
-            print("ok  ", name)
-
-
-main()
+run_tests(globals(), ADDON, sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else ())
