@@ -15,6 +15,7 @@
 #include "package/dds.h"
 #include "package/file_io.h"
 #include "package/image_io.h"
+#include "terms_kit.h"
 
 namespace ajar {
 namespace {
@@ -255,6 +256,71 @@ TEST_F(PackageWriter, HashFollowsContentOnly) {
     EXPECT_EQ(content_hash(content_), hash);
     content_.instances[0].uv_offset[0] = 0.5f;
     EXPECT_NE(content_hash(content_), hash);
+}
+
+TEST_F(PackageWriter, WithoutElementsThereAreNoTerms) {
+    write_package(content_, root_ / "package");
+    const nlohmann::json json = manifest(root_ / "package");
+    EXPECT_FALSE(fs::exists(root_ / "package/terms.bin"));
+    EXPECT_EQ(json["elements"], nlohmann::json::array());
+    EXPECT_EQ(json["dispatches"], nlohmann::json::array());
+    EXPECT_EQ(json["terms"], nlohmann::json::parse(R"([{"elements": [], "name": "base"}])"));
+    EXPECT_FALSE(json.contains("terms_file"));
+    EXPECT_EQ(json["lights"], nlohmann::json::parse(R"([{"name": "Sun", "role": "static"}])"));
+}
+
+TEST_F(PackageWriter, ElementsAndTermsAreListed) {
+    kit::TermScene scene;
+    scene.add_page(8, 8);
+    scene.add_element("lamps", "light_set", 2.0f);
+    scene.add_element("door", "door", 0.0f);
+    scene.add_term({0}, kit::texel_range(0, 40));
+    scene.add_term({0, 1}, kit::texel_range(10, 5), true);
+    scene.content.terms[1].relative_error = NAN; // not known
+    scene.content.lights = {{"Bulb", "static", "lamps"}, {"Sun", "primary", ""}, {"Tube", "primary", "lamps"}};
+    write_package(scene.content, root_ / "package");
+    const std::string check = "/usr/bin/python3 '" AJAR_SOURCE_DIR "/tests/support/validate.py' '" AJAR_SOURCE_DIR
+                              "/schemas/manifest.schema.json' '" +
+                              (root_ / "package/manifest.json").string() + "'";
+    EXPECT_EQ(std::system(("env -u LD_PRELOAD " + check).c_str()), 0);
+    const nlohmann::json json = manifest(root_ / "package");
+    EXPECT_EQ(json["elements"][0]["lights"], (nlohmann::json{"Bulb", "Tube"}));
+    EXPECT_EQ(json["elements"][0]["weight"], 2.0);
+    EXPECT_EQ(json["elements"][1]["texels"], 5);
+    EXPECT_EQ(json["lights"][0]["light_set"], "lamps");
+    EXPECT_FALSE(json["lights"][1].contains("light_set"));
+    ASSERT_EQ(json["terms"].size(), 3u);
+    EXPECT_EQ(json["terms"][1]["layout"], "unsigned-r11g11b10f-rgba8");
+    EXPECT_EQ(json["terms"][2]["layout"], "signed-rgb16f-rgba8");
+    EXPECT_EQ(json["terms"][2]["elements"], (nlohmann::json{"lamps", "door"}));
+    EXPECT_EQ(json["terms"][2]["name"], "lamps * door");
+    EXPECT_EQ(json["terms"][2]["texels"], 5);
+    EXPECT_TRUE(json["terms"][2]["relative_error"].is_null());
+    EXPECT_EQ(json["terms_file"]["bytes"], fs::file_size(root_ / "package" / "terms.bin"));
+}
+
+TEST_F(PackageWriter, TermsOfAnOlderPackageDoNotStay) {
+    kit::TermScene scene;
+    scene.add_page(8, 8);
+    scene.add_element("lamps", "light_set");
+    write_package(scene.content, root_ / "package");
+    EXPECT_TRUE(fs::exists(root_ / "package/terms.bin")); // no term, but an element that a game may ask for
+    write_package(content_, root_ / "package");
+    EXPECT_FALSE(fs::exists(root_ / "package/terms.bin"));
+}
+
+TEST_F(PackageWriter, HashFollowsTerms) {
+    kit::TermScene scene;
+    scene.add_page(8, 8);
+    const std::string bare = content_hash(scene.content);
+    scene.add_element("lamps", "light_set");
+    const std::string element = content_hash(scene.content);
+    EXPECT_NE(element, bare);
+    scene.add_term({0}, {1, 2});
+    const std::string term = content_hash(scene.content);
+    EXPECT_NE(term, element);
+    scene.content.terms[0].irradiance = scene.content.pages[0].irradiance.first(6);
+    EXPECT_NE(content_hash(scene.content), term);
 }
 
 TEST_F(PackageWriter, NamesThatAreNotUtf8DoNotBreakTheManifest) {

@@ -11,7 +11,7 @@ namespace ajar {
 namespace {
 
 constexpr int kNormals = 13;
-constexpr float kLargestFloat11 = 65024.0f, kLargestFloat10 = 64512.0f;
+constexpr float kLargestFloat11 = 65024.0f, kLargestFloat10 = 64512.0f, kLargestHalf = 65504.0f;
 
 /// z, 4 at 30 degrees, 8 at 55 degrees (algorithms.md 1.5).
 std::array<Vec3, kNormals> make_normals() {
@@ -135,6 +135,15 @@ uint32_t pack_r11g11b10f(const Vec3& v) {
 }
 
 Vec3 unpack_r11g11b10f(uint32_t p) { return {unpack_small_float(p & 0x7ff, 6), unpack_small_float((p >> 11) & 0x7ff, 6), unpack_small_float(p >> 22, 5)}; }
+
+uint32_t pack_half(float v) {
+    return pack_small_float(std::fabs(v), 10, kLargestHalf) | (v < 0.0f ? 0x8000u : 0u);
+}
+
+float unpack_half(uint32_t p) {
+    const float v = unpack_small_float(p & 0x7fffu, 10);
+    return (p & 0x8000u) != 0 ? -v : v;
+}
 
 uint32_t pack_direction(const Ahd& a) {
     const Vec3 d = a.direction * 0.5f + 0.5f;

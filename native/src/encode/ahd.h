@@ -27,6 +27,10 @@ Vec3 decode_ahd(const Ahd& ahd, const Vec3& n);
 uint32_t pack_r11g11b10f(const Vec3& v);
 Vec3 unpack_r11g11b10f(uint32_t packed);
 
+/// IEEE half float in the low 16 bits; rounds to nearest, too large becomes the largest finite, NaN 0.
+uint32_t pack_half(float v);
+float unpack_half(uint32_t packed);
+
 /// R, G, B = direction * 0.5 + 0.5, A = ratio, each UNORM8, R in the lowest byte.
 uint32_t pack_direction(const Ahd& ahd);
 /// ratio and direction of packed; the direction keeps the length that rounding left.

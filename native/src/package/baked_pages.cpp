@@ -2,7 +2,7 @@
 #include "package/baked_pages.h"
 
 #include "package/baked_terms.h"
-
+#include "package/fill_terms.h"
 #include "post/dilate.h"
 #include "post/stitch.h"
 
@@ -75,7 +75,7 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
 
 void Assembler::fill(ThreadPool& pool, Progress& progress) {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
-    if (!result.terms.terms.empty()) out.terms = make_terms(scene, receivers, result.terms, usable, source, solver.get(), pool, progress);
+    if (!result.terms.terms.empty()) out.terms = make_terms(scene, receivers, result.terms, usable, solver.get(), pool, progress);
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
         if (source[i] == i) continue;
@@ -84,6 +84,7 @@ void Assembler::fill(ThreadPool& pool, Progress& progress) {
         out.packed_direction[i] = out.packed_direction[source[i]];
         for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c) out.sh_rgb[i * 27 + c] = out.sh_rgb[size_t{source[i]} * 27 + c];
     }
+    fill_terms(source, out.terms);
 }
 
 std::span<const float> floats_of(const std::vector<Vec3>& v, const Page& p) { return {&v[p.first_texel].x, size_t{3} * p.width * p.height}; }

@@ -34,34 +34,6 @@ uint32_t fit_direction(const TermLight& light) {
     return pack_direction(fit_ahd(sign * light.irradiance, sh));
 }
 
-/// Texels that copy another one, by the texel they copy.
-std::vector<std::pair<uint32_t, uint32_t>> copies_of(const std::vector<uint32_t>& source) {
-    std::vector<std::pair<uint32_t, uint32_t>> copies;
-    for (uint32_t t = 0; t < source.size(); ++t)
-        if (source[t] != t) copies.emplace_back(source[t], t);
-    std::sort(copies.begin(), copies.end());
-    return copies;
-}
-
-void add_copies(const std::vector<std::pair<uint32_t, uint32_t>>& copies, BakedTerm& term) {
-    struct Texel {
-        uint32_t texel, from;
-    };
-    std::vector<Texel> all;
-    for (uint32_t i = 0; i < term.texel.size(); ++i) {
-        all.push_back({term.texel[i], i});
-        for (auto c = std::lower_bound(copies.begin(), copies.end(), std::pair{term.texel[i], 0u}); c != copies.end() && c->first == term.texel[i]; ++c) all.push_back({c->second, i});
-    }
-    std::sort(all.begin(), all.end(), [](const Texel& a, const Texel& b) { return a.texel < b.texel; });
-    const BakedTerm before = std::move(term);
-    term = {before.elements, before.is_signed, before.relative_error, before.discarded, {}, {}, {}};
-    for (const Texel& t : all) {
-        term.texel.push_back(t.texel);
-        term.irradiance.push_back(before.irradiance[t.from]);
-        term.packed_direction.push_back(before.packed_direction[t.from]);
-    }
-}
-
 struct TermMaker {
     const Snapshot& scene;
     const TermResult& terms;
@@ -100,16 +72,11 @@ struct TermMaker {
 
 } // namespace
 
-std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable,
-                                  const std::vector<uint32_t>& source, const SeamSolver* solver, ThreadPool& pool, Progress& progress) {
+std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool, Progress& progress) {
     const auto places = places_of_terms(receivers, terms, usable);
-    const auto copies = copies_of(source);
     const TermMaker maker{scene, terms, solver};
     std::vector<BakedTerm> out(terms.terms.size());
-    pool.for_each(out.size(), progress, [&](size_t i) {
-        out[i] = maker.make(static_cast<uint32_t>(i), places[i]);
-        add_copies(copies, out[i]);
-    });
+    pool.for_each(out.size(), progress, [&](size_t i) { out[i] = maker.make(static_cast<uint32_t>(i), places[i]); });
     std::erase_if(out, [](const BakedTerm& t) { return t.texel.empty(); });
     return out;
 }

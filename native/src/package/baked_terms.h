@@ -7,9 +7,7 @@
 namespace ajar {
 
 /// The terms of a bake as lists of texels: seams stitched where solver is not null, directions
-/// fitted, texels that are not usable left out, texels filled from a neighbour given its light.
-/// usable and source cover all page texels; source as nearest_known gives it.
-std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable,
-                                  const std::vector<uint32_t>& source, const SeamSolver* solver, ThreadPool& pool, Progress& progress);
+/// fitted, texels that are not usable left out. usable covers all page texels.
+std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool, Progress& progress);
 
 } // namespace ajar

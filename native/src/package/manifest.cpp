@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "package/manifest.h"
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "runtime/terms_format.h"
 
 namespace ajar {
 namespace {
@@ -75,6 +77,94 @@ Json instance_json(const PackageInstance& instance) {
     return json;
 }
 
+Json light_json(const PackageLight& light) {
+    Json json = {{"name", light.name}, {"role", light.role}};
+    if (!light.light_set.empty()) json["light_set"] = light.light_set;
+    return json;
+}
+
+Json element_json(const PackageContent& content, const ElementSummary& summary, size_t index) {
+    const PackageElement& element = content.elements[index];
+    Json json;
+    json["name"] = element.name;
+    json["kind"] = element.kind;
+    json["weight"] = element.weight;
+    json["lights"] = Json::array();
+    for (const PackageLight& light : content.lights)
+        if (element.kind == "light_set" && light.light_set == element.name) json["lights"].push_back(light.name);
+    json["texels"] = summary.texels;
+    json["bytes"] = summary.bytes;
+    return json;
+}
+
+/// NaN and infinity have no JSON; null says that the number is not known.
+Json number_or_null(float value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json term_json(const PackageContent& content, const TermSummary& summary, size_t index) {
+    const PackageTerm& term = content.terms[index];
+    Json json;
+    std::string name;
+    json["elements"] = Json::array();
+    for (const uint32_t e : term.elements) {
+        json["elements"].push_back(content.elements[e].name);
+        name += (name.empty() ? "" : " * ") + content.elements[e].name;
+    }
+    json["name"] = name;
+    json["layout"] = summary.is_signed ? "signed-rgb16f-rgba8" : "unsigned-r11g11b10f-rgba8";
+    json["scale"] = summary.scale;
+    json["texels"] = summary.texels;
+    json["bytes"] = summary.bytes;
+    json["relative_error"] = number_or_null(term.relative_error);
+    json["discarded"] = number_or_null(term.discarded);
+    return json;
+}
+
+Json class_json(const ClassSummary& summary, const char* name) {
+    return {{"class", name},
+            {"dispatches", summary.dispatches},
+            {"receivers", summary.receivers},
+            {"entries", summary.entries},
+            {"bytes", summary.bytes}};
+}
+
+Json terms_file_json(const TermsSummary& summary) {
+    return {{"file", terms::kFileName},
+            {"version", terms::kVersion},
+            {"bytes", summary.bytes},
+            {"wasted_updates", summary.wasted_updates},
+            {"crowded_texels", summary.crowded_texels},
+            {"crowded_energy", summary.crowded_energy}};
+}
+
+/// Elements, terms and dispatches; without elements the base alone.
+void add_term_lists(Json& json, const PackageContent& content, const TermsSummary* summary) {
+    for (const char* list : {"elements", "terms", "dispatches"}) json[list] = Json::array();
+    json["terms"].push_back({{"elements", Json::array()}, {"name", "base"}});
+    if (summary == nullptr) return;
+    for (size_t i = 0; i < content.elements.size(); ++i)
+        json["elements"].push_back(element_json(content, summary->elements[i], i));
+    for (size_t i = 0; i < content.terms.size(); ++i) json["terms"].push_back(term_json(content, summary->terms[i], i));
+    const char* const names[] = {"U", "Q", "V8", "V16"};
+    for (size_t i = 0; i < std::size(names); ++i)
+        json["dispatches"].push_back(class_json(summary->classes[i], names[i]));
+    json["terms_file"] = terms_file_json(*summary);
+}
+
+void hash_terms(Hash64& hash, const PackageContent& content) {
+    for (const PackageElement& element : content.elements) {
+        hash.add_bytes(element.name.data(), element.name.size());
+        hash.add_bytes(element.kind.data(), element.kind.size());
+        hash.add_bytes(&element.weight, sizeof element.weight);
+    }
+    for (const PackageTerm& term : content.terms) {
+        hash.add_array(std::span<const uint32_t>(term.elements));
+        hash.add(term.is_signed);
+        hash.add_array(term.texel);
+        hash.add_array(term.irradiance);
+        hash.add_array(term.direction);
+    }
+}
+
 Json parse_extras(const std::string& text) {
     if (text.empty()) return Json::object();
     Json extras = Json::parse(text, nullptr, false);
@@ -110,12 +200,13 @@ std::string content_hash(const PackageContent& content) {
         hash.add_bytes(instance.uv_scale, sizeof instance.uv_scale);
         hash.add_bytes(instance.uv_offset, sizeof instance.uv_offset);
     }
+    hash_terms(hash, content);
     char text[32];
     std::snprintf(text, sizeof text, "ajar64:%016llx", static_cast<unsigned long long>(hash.value()));
     return text;
 }
 
-std::string manifest_json(const PackageContent& content) {
+std::string manifest_json(const PackageContent& content, const TermsSummary* terms) {
     Json json;
     json["version"] = 1;
     json["minVersion"] = 1;
@@ -126,10 +217,9 @@ std::string manifest_json(const PackageContent& content) {
     for (size_t i = 0; i < content.pages.size(); ++i) json["pages"].push_back(page_json(content.pages[i], i));
     json["instances"] = Json::array();
     for (const PackageInstance& instance : content.instances) json["instances"].push_back(instance_json(instance));
-    json["terms"] = Json::array({{{"elements", Json::array()}, {"name", "base"}}});
+    add_term_lists(json, content, terms);
     json["lights"] = Json::array();
-    for (const PackageLight& light : content.lights)
-        json["lights"].push_back({{"name", light.name}, {"role", light.role}});
+    for (const PackageLight& light : content.lights) json["lights"].push_back(light_json(light));
     json["content_hash"] = content_hash(content);
     json["extras"] = parse_extras(content.extras);
     // Names come from the scene as they are; bytes that are not UTF-8 are replaced, not fatal.

@@ -32,14 +32,14 @@ struct PackageInstance {
 
 struct PackageLight {
     std::string name;
-    std::string role; ///< "primary" or "static"
+    std::string role;           ///< "primary" or "static"
     std::string light_set = {}; ///< name, or empty
 };
 
 /// A light set, door or toggle; terms name elements by their index.
 struct PackageElement {
     std::string name;
-    std::string kind; ///< "light_set", "door" or "toggle"
+    std::string kind;    ///< "light_set", "door" or "toggle"
     float weight = 1.0f; ///< at the start
 };
 
@@ -66,19 +66,47 @@ struct PackageContent {
     std::vector<PackageTerm> terms;
 };
 
+/// Dispatches of one class of terms.bin (native/runtime/terms_format.h).
+struct ClassSummary {
+    uint64_t dispatches = 0, receivers = 0, entries = 0, bytes = 0;
+};
+
+/// A term as it is stored.
+struct TermSummary {
+    bool is_signed = false;
+    float scale = 1.0f; ///< stored values times this are W/m^2
+    uint64_t texels = 0, bytes = 0;
+};
+
+/// Texels that an element reaches, and the bytes of all terms that it is part of.
+struct ElementSummary {
+    uint64_t texels = 0, bytes = 0;
+};
+
+/// What terms.bin holds, for the manifest.
+struct TermsSummary {
+    ClassSummary classes[4]; ///< U, Q, V8, V16
+    std::vector<TermSummary> terms;
+    std::vector<ElementSummary> elements;
+    uint64_t bytes = 0;          ///< size of the file
+    double wasted_updates = 1.0; ///< receivers updated over those that need it, elements changing one at a time
+    uint64_t crowded_texels = 0; ///< texels with more terms than the 16 that are stored
+    double crowded_energy = 0.0; ///< share of all terms' luminance that is lost there
+};
+
 /// File names of a page's images, e.g. "page_0.irradiance.exr".
 struct PageFiles {
     explicit PageFiles(size_t page);
     std::string irradiance, quality, sh, packed_irradiance, packed_direction, direction_png;
 };
 
-/// Hash of the pages' sizes and texels and of the instances, e.g. "ajar64:0123456789abcdef". Equal
-/// for equal content, whatever the image library's compression does.
+/// Hash of the pages' sizes and texels, of the instances and of the elements' terms, e.g. "ajar64:0123456789abcdef".
+/// Equal for equal content, whatever the image library's compression does.
 std::string content_hash(const PackageContent& content);
 
-/// manifest.json (schemas/manifest.schema.json). Throws Error(AJAR_ERROR_ARGUMENT) if extras is not
-/// a JSON object.
-std::string manifest_json(const PackageContent& content);
+/// manifest.json (schemas/manifest.schema.json). terms is null for a package without elements.
+/// Throws Error(AJAR_ERROR_ARGUMENT) if extras is not a JSON object.
+std::string manifest_json(const PackageContent& content, const TermsSummary* terms);
 
 /// True if the text is a manifest that some version of Ajar wrote.
 bool is_ajar_manifest(std::span<const uint8_t> text);

@@ -2,11 +2,14 @@
 #include "package/package_writer.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "base/error.h"
 #include "package/dds.h"
 #include "package/file_io.h"
 #include "package/image_io.h"
+#include "package/terms_file.h"
+#include "runtime/terms_format.h"
 
 namespace ajar {
 namespace {
@@ -40,22 +43,37 @@ std::vector<std::string> sh_channels() {
     return names;
 }
 
+std::vector<uint8_t> irradiance_dds(const PackagePage& page) {
+    return encode_dds(page.width, page.height, DdsFormat::kR11G11B10Float, page.packed_irradiance);
+}
+
+std::vector<uint8_t> direction_dds(const PackagePage& page) {
+    return encode_dds(page.width, page.height, DdsFormat::kR8G8B8A8Unorm, page.packed_direction);
+}
+
+/// terms.bin, or nothing for a package without elements.
+std::optional<TermsFile> make_terms(const PackageContent& content) {
+    if (content.elements.empty() && content.terms.empty()) return std::nullopt;
+    std::vector<PageChecksums> sums;
+    for (const PackagePage& page : content.pages)
+        sums.push_back({terms::file_checksum(irradiance_dds(page)), terms::file_checksum(direction_dds(page))});
+    return make_terms_file(content, sums);
+}
+
 void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
     const PageFiles files(index);
     const uint32_t w = page.width, h = page.height;
     write_file_synced(folder / files.irradiance, encode_exr(w, h, {"R", "G", "B"}, page.irradiance));
     write_file_synced(folder / files.quality, encode_quality(page));
     if (!page.sh.empty()) write_file_synced(folder / files.sh, encode_exr(w, h, sh_channels(), page.sh));
-    write_file_synced(folder / files.packed_irradiance,
-                      encode_dds(w, h, DdsFormat::kR11G11B10Float, page.packed_irradiance));
-    write_file_synced(folder / files.packed_direction,
-                      encode_dds(w, h, DdsFormat::kR8G8B8A8Unorm, page.packed_direction));
+    write_file_synced(folder / files.packed_irradiance, irradiance_dds(page));
+    write_file_synced(folder / files.packed_direction, direction_dds(page));
     write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
 }
 
-/// "page_<number>.<rest>" and the manifest are Ajar's; everything else belongs to someone else.
+/// "page_<number>.<rest>", the terms and the manifest are Ajar's; everything else is someone else's.
 bool is_own_file(const std::string& name) {
-    if (name == kManifest) return true;
+    if (name == kManifest || name == terms::kFileName) return true;
     if (name.rfind("page_", 0) != 0) return false;
     const size_t dot = name.find('.', 5);
     if (dot == std::string::npos || dot == 5 ||
@@ -98,9 +116,11 @@ void carry_over(const fs::path& existing, const fs::path& temporary) {
 
 void write_package(const PackageContent& content, const fs::path& directory) {
     for (size_t i = 0; i < content.pages.size(); ++i) check_page(content.pages[i], i);
-    const std::string manifest = manifest_json(content);
+    const std::optional<TermsFile> terms_file = make_terms(content);
+    const std::string manifest = manifest_json(content, terms_file ? &terms_file->summary : nullptr);
     const auto fill = [&](const fs::path& folder) {
         for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, folder);
+        if (terms_file) write_file_synced(folder / terms::kFileName, terms_file->bytes);
         write_file_synced(folder / kManifest, {reinterpret_cast<const uint8_t*>(manifest.data()), manifest.size()});
     };
     const auto accept_existing = [&](const fs::path& existing, const fs::path* temporary) {

@@ -31,7 +31,7 @@ struct BrightTexel {
     Vec3 edge_x{0.0f}, edge_y{0.0f};
     Vec3 normal{0.0f};
     Vec3 radiance{0.0f}; ///< W/(m^2 sr)
-    Presence presence;   ///< of its surface
+    Presence presence = {}; ///< of its surface
 };
 
 /// Everything that next-event estimation can aim at: lamps, clusters of emissive triangles, an
