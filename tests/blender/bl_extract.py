@@ -1,154 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Extraction: small scenes built here, read back from the snapshot they give.
+"""Extraction of meshes, materials and textures.
 
     blender -b --factory-startup --python-exit-code 1 -P tests/blender/bl_extract.py [-- NAME...]
 """
-import importlib
 import math
 import os
 import sys
-import tempfile
-from pathlib import Path
 
 sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import bpy
 import numpy as np
 
-ROOT = Path(os.environ.get("AJAR_ROOT", Path(__file__).resolve().parents[2]))
-sys.path.insert(0, str(ROOT))
-MODULE = os.environ.get("AJAR_ADDON_MODULE", "blender_addon")
-snapshot = importlib.import_module(MODULE + ".extract.snapshot")
-layout_module = importlib.import_module(MODULE + ".extract.layout")
-world_module = importlib.import_module(MODULE + ".extract.world")
-color_module = importlib.import_module(MODULE + ".extract.node_color")
-model = importlib.import_module(MODULE + ".model")
-Reader = importlib.import_module(MODULE + ".bridge.snapshot_io").Reader
+from support.extract_kit import *  # noqa: F401,F403 - the words these tests are written in
+from support.extract_kit import run
 
-QUAD = ([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [(0, 1, 2, 3)])
-
-
-# ---- helpers --------------------------------------------------------------------------------
-
-class Shot:
-    """A snapshot read back: data, result, and arrays by reference."""
-
-    def __init__(self, layout=None):
-        with tempfile.TemporaryDirectory() as folder:
-            self.result = snapshot.write_snapshot(bpy.context, folder, model.engine_settings("DRAFT"), layout)
-            self._reader = Reader(folder)
-            self.data = self._reader.data
-            self.arrays = {}
-            for mesh in self.data["meshes"]:
-                mesh["uv_layers"] = [self.array(r, "f32", 3, 2) for r in mesh["uv_layers"]]
-                mesh["color_layers"] = [self.array(r, "f32", 3, 4) for r in mesh["color_layers"]]
-                mesh["positions"] = self.array(mesh["positions"], "f32", 3)
-                mesh["corner_vertex"] = self.array(mesh["corner_vertex"], "u32", 3)
-                if mesh["corner_normals"]:
-                    mesh["corner_normals"] = self.array(mesh["corner_normals"], "f32", 3, 3)
-            for texture in self.data["textures"]:
-                kind = texture["texel"]
-                texture["texels"] = self.array(texture["texels"], kind, texture["width"], 4)
-            self._reader.close()
-
-    def array(self, reference, kind, *shape):
-        return np.array(self._reader.values(reference, kind)).reshape(-1, *shape)
-
-    def instance(self, name):
-        return next(i for i in self.data["instances"] if i["name"] == name)
-
-    def mesh(self, name):
-        return self.data["meshes"][self.instance(name)["mesh"]]
-
-    def material(self, name, slot=0):
-        return self.data["materials"][self.instance(name)["materials"][slot]]
-
-    def closures(self, name, slot=0):
-        return self.material(name, slot)["closures"]
-
-    def warned(self, culprit, part):
-        return any(c == culprit and part in t for c, t in self.result.warnings)
-
-
-def reset():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    enabled = os.environ.get("AJAR_ADDON_MODULE")
-    if enabled:
-        bpy.ops.preferences.addon_enable(module=enabled)
-
-
-def add(name, data=None, **options):
-    obj = bpy.data.objects.new(name, data)
-    for key, value in options.items():
-        setattr(obj, key, value)
-    bpy.context.scene.collection.objects.link(obj)
-    return obj
-
-
-def quad_mesh(name, uv=True):
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(QUAD[0], [], QUAD[1])
-    if uv:
-        layer = mesh.uv_layers.new(name="UVMap")
-        for loop in mesh.loops:
-            layer.data[loop.index].uv = mesh.vertices[loop.vertex_index].co[:2]
-    return mesh
-
-
-def quad(name, material=None, **options):
-    mesh = quad_mesh(name)
-    if material is not None:
-        mesh.materials.append(material)
-    return add(name, mesh, **options)
-
-
-def tree_material(name):
-    """(material, tree, output node) with an empty tree."""
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    material.node_tree.nodes.clear()
-    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
-    return material, material.node_tree, output
-
-
-def surface(name, build):
-    """A quad whose material's surface is the shader socket that build(tree) returns."""
-    material, tree, output = tree_material(name)
-    tree.links.new(build(tree), output.inputs["Surface"])
-    quad(name, material)
-    return material
-
-
-def node(tree, kind, inputs=None, **options):
-    made = tree.nodes.new("ShaderNode" + kind)
-    for key, value in options.items():
-        setattr(made, key, value)
-    for key, value in (inputs or {}).items():
-        if isinstance(value, bpy.types.NodeSocket):
-            tree.links.new(value, made.inputs[key])
-        else:
-            made.inputs[key].default_value = value
-    return made
-
-
-def image(name, pixels, colorspace="Non-Color", is_float=False):
-    """Image of (height, width, 4) values, bottom row first."""
-    pixels = np.asarray(pixels, dtype=np.float32)
-    made = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], alpha=True, float_buffer=is_float)
-    made.colorspace_settings.name = colorspace
-    made.pixels.foreach_set(pixels.reshape(-1))
-    made.pack()
-    return made
-
-
-def close(a, b, tolerance=1e-5):
-    assert np.allclose(a, b, atol=tolerance, rtol=0), f"{a} is not {b}"
-
-
-def value(record):
-    return record.get("value", [1, 1, 1])
-
-
-# ---- geometry -------------------------------------------------------------------------------
 
 def test_layers_and_normals():
     mesh = quad_mesh("Layers")
@@ -271,7 +137,9 @@ def test_geometry_nodes():
         tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
     else:
         tree.outputs.new("NodeSocketGeometry", "Geometry")
-    line, cube, place_node = (tree.nodes.new("GeometryNode" + k) for k in ("MeshLine", "MeshCube", "InstanceOnPoints"))
+    line, cube, place_node = (
+        tree.nodes.new("GeometryNode" + k) for k in ("MeshLine", "MeshCube", "InstanceOnPoints")
+    )
     leave = tree.nodes.new("NodeGroupOutput")
     tree.links.new(line.outputs[0], place_node.inputs["Points"])
     tree.links.new(cube.outputs[0], place_node.inputs["Instance"])
@@ -321,12 +189,24 @@ def test_layout_request():
 
 # ---- materials ------------------------------------------------------------------------------
 
+
 def test_principled():
-    surface("P", lambda t: node(t, "BsdfPrincipled", {
-        "Base Color": (0.1, 0.2, 0.3, 1), "Metallic": 0.25, "Roughness": 0.6}).outputs[0])
-    surface("Glow", lambda t: node(t, "BsdfPrincipled", {"Emission": (1, 0.5, 0, 1), "Emission Strength": 4.0}
-                                   if "Emission" in t.nodes.new("ShaderNodeBsdfPrincipled").inputs else
-                                   {"Emission Color": (1, 0.5, 0, 1), "Emission Strength": 4.0}).outputs[0])
+    surface(
+        "P",
+        lambda t: node(
+            t, "BsdfPrincipled", {"Base Color": (0.1, 0.2, 0.3, 1), "Metallic": 0.25, "Roughness": 0.6}
+        ).outputs[0],
+    )
+    surface(
+        "Glow",
+        lambda t: node(
+            t,
+            "BsdfPrincipled",
+            {"Emission": (1, 0.5, 0, 1), "Emission Strength": 4.0}
+            if "Emission" in t.nodes.new("ShaderNodeBsdfPrincipled").inputs
+            else {"Emission Color": (1, 0.5, 0, 1), "Emission Strength": 4.0},
+        ).outputs[0],
+    )
     surface("Half", lambda t: node(t, "BsdfPrincipled", {"Alpha": 0.25}).outputs[0])
     shot = Shot()
     (only,) = shot.closures("P")
@@ -342,17 +222,10 @@ def test_principled():
     close(value(half[1]["weight_a"])[0], 0.25)
 
 
-def checker(size=2):
-    pixels = np.zeros((size, size, 4), dtype=np.float32)
-    pixels[..., 0] = np.linspace(0, 1, size)[None, :]
-    pixels[..., 1] = np.linspace(0, 1, size)[:, None]
-    pixels[..., 3] = 1.0
-    pixels[0, 0, 3] = 0.0
-    return pixels
-
-
 def textured(name, shown, shader="BsdfDiffuse"):
-    surface(name, lambda t: node(t, shader, {"Color": node(t, "TexImage", image=shown).outputs[0]}).outputs[0])
+    surface(
+        name, lambda t: node(t, shader, {"Color": node(t, "TexImage", image=shown).outputs[0]}).outputs[0]
+    )
 
 
 def test_textures():
@@ -363,13 +236,32 @@ def test_textures():
 
     def mapped(tree):
         uv = node(tree, "UVMap", uv_map="UVMap")
-        turned = node(tree, "Mapping", {"Vector": uv.outputs[0], "Location": (1, 2, 0),
-                                        "Rotation": (0, 0, math.pi / 2), "Scale": (3, 4, 1)})
-        texture = node(tree, "TexImage", {"Vector": turned.outputs[0]}, image=data, interpolation="Closest",
-                       extension="EXTEND")
-        tinted = node(tree, "MixRGB", {"Fac": 1.0, "Color1": texture.outputs[0], "Color2": (0.5, 1, 2, 1)},
-                      blend_type="MULTIPLY")
+        turned = node(
+            tree,
+            "Mapping",
+            {
+                "Vector": uv.outputs[0],
+                "Location": (1, 2, 0),
+                "Rotation": (0, 0, math.pi / 2),
+                "Scale": (3, 4, 1),
+            },
+        )
+        texture = node(
+            tree,
+            "TexImage",
+            {"Vector": turned.outputs[0]},
+            image=data,
+            interpolation="Closest",
+            extension="EXTEND",
+        )
+        tinted = node(
+            tree,
+            "MixRGB",
+            {"Fac": 1.0, "Color1": texture.outputs[0], "Color2": (0.5, 1, 2, 1)},
+            blend_type="MULTIPLY",
+        )
         return node(tree, "BsdfDiffuse", {"Color": tinted.outputs[0]}).outputs[0]
+
     surface("Mapped", mapped)
     textured("Plain", coded)
     textured("Float", high, "Emission")
@@ -401,20 +293,30 @@ def test_mix_and_alpha():
     def mixed(tree):
         texture = node(tree, "TexImage", image=cutout)
         solid = node(tree, "BsdfDiffuse", {"Color": texture.outputs[0]})
-        return node(tree, "MixShader", {0: texture.outputs["Alpha"], 1: node(tree, "BsdfTransparent").outputs[0],
-                                        2: solid.outputs[0]}).outputs[0]
+        return node(
+            tree,
+            "MixShader",
+            {0: texture.outputs["Alpha"], 1: node(tree, "BsdfTransparent").outputs[0], 2: solid.outputs[0]},
+        ).outputs[0]
+
     surface("Fence", mixed)
 
     def nested(tree):
         texture = node(tree, "TexImage", image=cutout)
-        inner = node(tree, "MixShader", {0: 0.25, 1: node(tree, "Emission").outputs[0],
-                                         2: node(tree, "BsdfDiffuse").outputs[0]})
+        inner = node(
+            tree,
+            "MixShader",
+            {0: 0.25, 1: node(tree, "Emission").outputs[0], 2: node(tree, "BsdfDiffuse").outputs[0]},
+        )
         add_shader = node(tree, "AddShader", {0: inner.outputs[0], 1: node(tree, "Emission").outputs[0]})
         return node(tree, "MixShader", {0: texture.outputs[0], 1: add_shader.outputs[0]}).outputs[0]
+
     surface("Nested", nested)
     shot = Shot()
     clear, solid = shot.closures("Fence")
-    assert clear["type"] == "transparent" and clear["weight_a"]["invert"] and clear["weight_a"]["channel"] == "a"
+    assert (
+        clear["type"] == "transparent" and clear["weight_a"]["invert"] and clear["weight_a"]["channel"] == "a"
+    )
     assert solid["weight_a"]["channel"] == "a" and not solid["weight_a"].get("invert")
     emission, diffuse, extra = shot.closures("Nested")
     close(value(emission["weight_a"])[0], 0.75)
@@ -427,9 +329,14 @@ def test_vertex_colours_and_groups():
     def colored(tree):
         layer = node(tree, "VertexColor", layer_name="Col")
         texture = node(tree, "TexImage", image=image("Tint", checker()))
-        both = node(tree, "MixRGB", {"Fac": 1.0, "Color1": layer.outputs[0], "Color2": texture.outputs[0]},
-                    blend_type="MULTIPLY")
+        both = node(
+            tree,
+            "MixRGB",
+            {"Fac": 1.0, "Color1": layer.outputs[0], "Color2": texture.outputs[0]},
+            blend_type="MULTIPLY",
+        )
         return node(tree, "BsdfDiffuse", {"Color": both.outputs[0]}).outputs[0]
+
     surface("Painted", colored)
     bpy.data.meshes["Painted"].color_attributes.new("Col", "FLOAT_COLOR", "POINT")
     group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
@@ -452,6 +359,7 @@ def test_vertex_colours_and_groups():
         muted.mute = True
         tree.links.new(muted.outputs[0], outer.inputs[0])
         return outer.outputs[0]
+
     surface("Grouped", grouped)
     shot = Shot()
     color = shot.closures("Painted")[0]["color"]
@@ -466,6 +374,7 @@ def test_ramp_per_texel():
         ramp.color_ramp.elements[0].color = (1, 0, 0, 1)
         ramp.color_ramp.elements[1].color = (0, 0, 1, 1)
         return node(tree, "BsdfDiffuse", {"Color": ramp.outputs[0]}).outputs[0]
+
     surface("Ramp", ramped)
     shot = Shot()
     texture = shot.data["textures"][shot.closures("Ramp")[0]["color"]["texture"]]
@@ -484,8 +393,10 @@ def test_blackbody():
 
 # ---- what Cycles bakes ------------------------------------------------------------------------
 
+
 def object_color_material(name, grouped):
     """Diffuse whose colour is the object-space position: no field expresses that."""
+
     def build(tree):
         target = tree
         if grouped:
@@ -503,6 +414,7 @@ def object_color_material(name, grouped):
         outer = tree.nodes.new("ShaderNodeGroup")
         outer.node_tree = target
         return outer.outputs[0]
+
     return surface(name, build)
 
 
@@ -535,17 +447,33 @@ def test_cycles_bake():
 NODE_CASES = {
     "gamma": lambda t: node(t, "Gamma", {"Color": (0.5, 0.2, 1.5, 1), "Gamma": 1.7}),
     "invert": lambda t: node(t, "Invert", {0: 0.3, "Color": (0.5, 0.2, 0.9, 1)}),
-    "bright": lambda t: node(t, "BrightContrast", {"Color": (0.5, 0.2, 0.9, 1), "Bright": 0.1, "Contrast": 0.4}),
-    "hue": lambda t: node(t, "HueSaturation", {"Color": (0.5, 0.2, 0.9, 1), "Hue": 0.7, "Saturation": 0.6,
-                                               "Value": 1.3, 3: 0.8}),
+    "bright": lambda t: node(
+        t, "BrightContrast", {"Color": (0.5, 0.2, 0.9, 1), "Bright": 0.1, "Contrast": 0.4}
+    ),
+    "hue": lambda t: node(
+        t, "HueSaturation", {"Color": (0.5, 0.2, 0.9, 1), "Hue": 0.7, "Saturation": 0.6, "Value": 1.3, 3: 0.8}
+    ),
     "blackbody": lambda t: node(t, "Blackbody", {0: 3200.0}),
     "combine": lambda t: node(t, "CombineColor", {0: 0.6, 1: 0.5, 2: 0.7}, mode="HSV"),
     "ramp": lambda t: node(t, "ValToRGB", {0: 0.3}),
     "math": lambda t: node(t, "Math", {0: 0.3, 1: 2.5}, operation="POWER"),
     "range": lambda t: node(t, "MapRange", {"Value": 0.3, 1: 0.1, 2: 0.5, 3: 2.0, 4: 1.0}),
-    **{f"mix {blend.lower()}": lambda t, blend=blend: node(
-        t, "MixRGB", {0: 0.6, 1: (0.2, 0.5, 0.8, 1), 2: (0.7, 0.3, 0.4, 1)}, blend_type=blend)
-       for blend in ("MIX", "ADD", "MULTIPLY", "SCREEN", "OVERLAY", "DIFFERENCE", "DIVIDE", "LINEAR_LIGHT", "LIGHTEN")},
+    **{
+        f"mix {blend.lower()}": lambda t, blend=blend: node(
+            t, "MixRGB", {0: 0.6, 1: (0.2, 0.5, 0.8, 1), 2: (0.7, 0.3, 0.4, 1)}, blend_type=blend
+        )
+        for blend in (
+            "MIX",
+            "ADD",
+            "MULTIPLY",
+            "SCREEN",
+            "OVERLAY",
+            "DIFFERENCE",
+            "DIVIDE",
+            "LINEAR_LIGHT",
+            "LIGHTEN",
+        )
+    },
 }
 
 
@@ -553,7 +481,9 @@ def test_nodes_agree_with_cycles():
     """Each node on constants: our evaluation against Cycles' bake of the same socket."""
     materials = {}
     for name, build in NODE_CASES.items():
-        materials[name] = surface(name, lambda t: node(t, "Emission", {"Color": build(t).outputs[0]}).outputs[0])
+        materials[name] = surface(
+            name, lambda t: node(t, "Emission", {"Color": build(t).outputs[0]}).outputs[0]
+        )
     shot = Shot()
     bake = importlib.import_module(MODULE + ".extract.cycles_bake").bake_socket
     wrong = []
@@ -561,7 +491,9 @@ def test_nodes_agree_with_cycles():
         emission = next(n for n in material.node_tree.nodes if n.type == "EMISSION")
         owner = Owner(bpy.data.objects[name], material)
         uv = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], dtype=np.float32)
-        baked = bake(owner, material, (emission.name, emission.inputs["Color"].identifier), uv, (16, 16), True)
+        baked = bake(
+            owner, material, (emission.name, emission.inputs["Color"].identifier), uv, (16, 16), True
+        )
         ours = value(shot.closures(name)[0]["color"])
         if not np.allclose(ours, baked[8, 4, :3], rtol=0.02, atol=2e-3):
             wrong.append((name, ours, baked[8, 4, :3]))
@@ -572,164 +504,15 @@ class Owner:
     """A stand-in for snapshot.Placed."""
 
     def __init__(self, source, material):
-        self.name, self.source, self.materials, self.matrix = source.name, source, [material], source.matrix_world
+        self.name, self.source, self.materials, self.matrix = (
+            source.name,
+            source,
+            [material],
+            source.matrix_world,
+        )
 
     def make_mesh(self, split):
         return self.source.data.copy(), np.array([[0, 1, 2], [0, 2, 3]])
 
 
-def data_counts():
-    return {name: len(getattr(bpy.data, name)) for name in
-            ("scenes", "worlds", "objects", "meshes", "materials", "images", "cameras", "node_groups", "textures")}
-
-
-# ---- world and lights -------------------------------------------------------------------------
-
-def directional_world():
-    world = bpy.data.worlds.new("Directions")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    tree = world.node_tree
-    tree.nodes.clear()
-    direction = node(tree, "TexCoord").outputs["Generated"]
-    half = node(tree, "VectorMath", {0: direction, 1: (0.5, 0.5, 0.5), 2: (0.5, 0.5, 0.5)}, operation="MULTIPLY_ADD")
-    background = node(tree, "Background", {"Color": half.outputs[0], "Strength": 2.0})
-    tree.links.new(background.outputs[0], tree.nodes.new("ShaderNodeOutputWorld").inputs[0])
-    return world
-
-
-def test_sky_mapping():
-    directional_world()
-    before, engine = data_counts(), bpy.context.scene.render.engine
-    world_module.SKY_WIDTH, old = 64, world_module.SKY_WIDTH
-    try:
-        shot = Shot()
-    finally:
-        world_module.SKY_WIDTH = old
-    assert data_counts() == before and bpy.context.scene.render.engine == engine
-    sky = shot.data["sky"]
-    assert sky["type"] == "equirect"
-    texels = shot.data["textures"][sky["texture"]]["texels"]
-    height, width = texels.shape[:2]
-    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij")
-    angle, z = -(u - 0.5) * 2 * math.pi, np.sin((v - 0.5) * math.pi)
-    flat = np.sqrt(1 - z * z)
-    expected = np.stack([np.cos(angle) * flat, np.sin(angle) * flat, z], -1) + 1.0
-    close(texels[..., :3], expected, 0.06)
-
-
-def test_constant_sky():
-    world = bpy.data.worlds.new("Constant")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    background = next(n for n in world.node_tree.nodes if n.type == "BACKGROUND")
-    background.inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
-    background.inputs["Strength"].default_value = 0.5
-    sky = Shot().data["sky"]
-    assert sky["type"] == "constant"
-    close(sky["color"], (0.05, 0.1, 0.2))
-    bpy.context.scene.world = None
-    assert Shot().data["sky"]["type"] == "none"
-
-
-def test_hdri_sky():
-    world = bpy.data.worlds.new("HDRI")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    tree = world.node_tree
-    texture = node(tree, "TexEnvironment", image=image("Env", checker(8) * 5, "Non-Color", True))
-    background = next(n for n in tree.nodes if n.type == "BACKGROUND")
-    tree.links.new(texture.outputs[0], background.inputs["Color"])
-    background.inputs["Strength"].default_value = 3.0
-    shot = Shot()
-    assert shot.data["sky"]["type"] == "equirect" and shot.data["sky"]["color"] == [3.0] * 3
-    close(shot.data["textures"][shot.data["sky"]["texture"]]["texels"][..., :2], checker(8)[..., :2] * 5)
-
-
-def light(name, kind, **options):
-    data = bpy.data.lights.new(name, kind)
-    for key, setting in options.items():
-        setattr(data, key, setting)
-    return add(name, data)
-
-
-def test_lights():
-    light("Point", "POINT", energy=12.5, color=(1, 0.5, 0.25), shadow_soft_size=0.3)
-    light("Spot", "SPOT", spot_size=1.2, spot_blend=0.3)
-    light("Sun", "SUN", energy=3, angle=0.1)
-    light("Square", "AREA", shape="SQUARE", size=2)
-    light("Disk", "AREA", shape="DISK", size=2)
-    light("Ellipse", "AREA", shape="ELLIPSE", size=2, size_y=3)
-    off = light("Gone", "POINT")
-    off.hide_render = True
-    nodes = light("Nodes", "POINT", use_nodes=True)
-    emission = next(n for n in nodes.data.node_tree.nodes if n.type == "EMISSION")
-    emission.inputs["Strength"].default_value = 2.0
-    emission.inputs["Color"].default_value = (0.5, 1, 1, 1)
-    lights = {l["name"]: l for l in Shot().data["lights"]}
-    assert "Gone" not in lights
-    assert lights["Point"]["energy"] == 12.5 and abs(lights["Point"]["radius"] - 0.3) < 1e-6
-    close(lights["Point"]["color"], (1, 0.5, 0.25))
-    assert abs(lights["Spot"]["spot_angle"] - 1.2) < 1e-6 and lights["Sun"]["type"] == "sun"
-    assert lights["Square"]["type"] == "rectangle" and lights["Square"]["size_y"] == 2
-    assert lights["Disk"]["type"] == "ellipse" and lights["Ellipse"]["size_y"] == 3
-    close(lights["Nodes"]["color"], (1, 2, 2))
-
-
-def test_sky_texture_has_its_sun():
-    """Irradiance of a Sky Texture's sun disc on a plane that faces it: the panorama keeps it."""
-    world = bpy.data.worlds.new("Nishita")
-    bpy.context.scene.world = world
-    world.use_nodes = True
-    tree = world.node_tree
-    sky = node(tree, "TexSky")
-    background = next(n for n in tree.nodes if n.type == "BACKGROUND")
-    tree.links.new(sky.outputs[0], background.inputs["Color"])
-    sums = []
-    for disc in (False, True):
-        sky.sun_disc, sky.sun_elevation, sky.sun_size = disc, 0.8, math.radians(2)
-        texels = world_module.render_panorama(world, 512).data
-        latitude = (np.arange(256) + 0.5) / 256 * math.pi - math.pi / 2
-        solid_angle = np.cos(latitude)[:, None] * (math.pi / 256) ** 2
-        sums.append(float((texels[..., 1] * solid_angle)[128:].sum()))
-        high = np.unravel_index(texels[..., 1].argmax(), texels.shape[:2])
-    assert sums[1] > 2 * sums[0] > 0.0, sums
-    assert abs(latitude[high[0]] - 0.8) < 0.03
-
-
-def test_tags():
-    """What the artist set in Object.ajar and World.ajar; needs the add-on registered."""
-    if not hasattr(bpy.types.Scene, "ajar"):
-        return
-    for name, tag in (("Ignored", "IGNORE"), ("Grid", "LIGHT_GRID"), ("Block", "OCCLUDER"), ("Lit", "AUTO")):
-        quad(name).ajar.surface = tag
-    light("Off", "POINT").ajar.light_role = "OFF"
-    light("Static", "POINT").ajar.light_role = "STATIC"
-    directional_world().ajar.sky_role = "OFF"
-    _, mapping = layout_request()
-    assert mapping.meshes == [("Lit", ["Lit"])]
-    shot = Shot()
-    assert "Ignored" not in [i["name"] for i in shot.data["instances"]]
-    assert [(l["name"], l["role"]) for l in shot.data["lights"]] == [("Static", "static")]
-    assert shot.data["sky"]["type"] == "none" and not shot.warned("Block", "lightmap")
-
-
-def main():
-    wanted = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
-    tests = [(n, f) for n, f in globals().items() if n.startswith("test_") and (not wanted or n in wanted)]
-    failed = []
-    for name, function in tests:
-        reset()
-        try:
-            function()
-            print("ok  ", name)
-        except Exception:
-            import traceback
-            traceback.print_exc()
-            print("FAIL", name)
-            failed.append(name)
-    if failed:
-        raise SystemExit(f"{len(failed)} of {len(tests)} failed: {', '.join(failed)}")
-
-
-main()
+run(globals())
