@@ -14,7 +14,7 @@ using nlohmann::json;
 json settings_json(const ajar_settings& s) {
     return {{"bounces", s.bounces}, {"noise_target", s.noise_target}, {"time_limit", s.time_limit}, {"samples", s.samples},
             {"bounce_samples", s.bounce_samples}, {"direct_samples", s.direct_samples}, {"positions_per_texel", s.positions_per_texel},
-            {"seed", s.seed}, {"threads", s.threads}, {"stitch_seams", s.stitch_seams != 0}, {"keep_sh", s.keep_sh != 0}};
+            {"combinations", s.combinations}, {"term_threshold", s.term_threshold}, {"seed", s.seed}, {"threads", s.threads}, {"stitch_seams", s.stitch_seams != 0}, {"keep_sh", s.keep_sh != 0}};
 }
 
 json seconds_json(const Job& job) {
@@ -64,11 +64,17 @@ json effect(const char* name, bool used, const std::string& why) {
     return {{"name", name}, {"status", used ? "simulated" : "skipped"}, {"reason", why}};
 }
 
+json element_effect(const Snapshot& s, ElementKind kind, const char* name) {
+    const auto count = std::count_if(s.elements.begin(), s.elements.end(), [&](const Element& e) { return e.kind == kind; });
+    return effect(name, count != 0, count != 0 ? std::to_string(count) : "the scene has none");
+}
+
 json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& settings) {
     size_t primary = 0, transmissive = 0, unmapped = 0, lit = 0;
     for (const Light& l : s.lights) primary += l.primary && !l.dark(), lit += !l.dark();
     for (const Material& m : s.materials) transmissive += m.transmits;
     for (const Instance& i : s.instances) unmapped += !i.lightmapped;
+    const auto combinations = std::count_if(o.pages.terms.begin(), o.pages.terms.end(), [](const BakedTerm& t) { return t.elements.size() > 1; });
     const auto n = [](size_t v) { return std::to_string(v); };
     return {effect("primary lights", primary != 0, n(primary) + " lamps"), effect("static lights", lit != primary, n(lit - primary) + " lamps"),
             effect("emissive surfaces", o.emissive_triangles != 0, n(o.emissive_triangles) + " triangles"),
@@ -76,8 +82,21 @@ json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& se
             effect("transparency", transmissive != 0, n(transmissive) + " materials"),
             effect("surfaces without lightmap", unmapped != 0, n(unmapped) + " objects"),
             effect("aiming at bright texels", o.bake.bright_texels != 0, n(o.bake.bright_texels) + " texels"),
+            element_effect(s, ElementKind::light_set, "light sets"), element_effect(s, ElementKind::door, "doors"), element_effect(s, ElementKind::toggle, "toggles"),
+            effect("combinations of elements", combinations != 0, n(static_cast<size_t>(combinations)) + " terms"),
             effect("bounces", settings.bounces != 0, n(settings.bounces) + " bounces"),
             effect("seam stitching", o.pages.seam_points != 0, n(o.pages.seam_points) + " seam points")};
+}
+
+/// Light of every product of elements: where it is kept, how exact it is, what was left out.
+json terms_json(const Snapshot& s, const BakedPages& pages) {
+    json terms = json::array();
+    for (const BakedTerm& t : pages.terms) {
+        json names = json::array();
+        for (const uint32_t e : t.elements) names.push_back(s.elements[e].name);
+        terms.push_back({{"elements", names}, {"texels", t.texel.size()}, {"signed", t.is_signed}, {"relative_error", t.relative_error}, {"discarded", t.discarded}});
+    }
+    return terms;
 }
 
 json receivers_json(const JobOutput& o) {
@@ -104,7 +123,7 @@ std::string make_report(const Job& job) {
                          {"rays", {{"total", job.progress().rays()}, {"per_second", static_cast<double>(job.progress().rays()) / seconds}}},
                          {"receivers", receivers_json(o)}, {"error", error_json(job, o)}, {"bounces", bounces_json(job, o)},
                          {"time_limited", o.bake.time_limited}, {"effects", effects_json(job.scene(), o, job.settings())},
-                         {"warnings", warnings}, {"memory_bytes", peak_memory()}};
+                         {"terms", terms_json(job.scene(), o.pages)}, {"warnings", warnings}, {"memory_bytes", peak_memory()}};
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 
