@@ -14,12 +14,13 @@ def check(context):
     """All of them for the scene in context."""
     context.view_layer.update()  # scripts may just have linked objects
     scene, tags = context.scene, Tags(context.scene)
-    yield from _sets(scene, tags)
-    parts = _count_parts(tags)
+    shown = Shown(scene, context.view_layer, tags)
+    yield from _sets(scene, tags, shown)
+    parts = _count_parts(tags, shown)
     for owner in tags.owners():
         yield from _owner(owner, parts)
         if kind_of(owner) == "door" and owner.ajar.open_pose is not None:
-            yield from _pose(context, tags, owner, owner.ajar.open_pose)
+            yield from _pose(context, shown, owner, owner.ajar.open_pose)
     for owner, pose, first in tags.shared_poses:
         yield warning(
             owner.name,
@@ -32,7 +33,32 @@ def check(context):
         yield error("", text, "Put lights or props that change together into one")
 
 
-def _sets(scene, tags):
+class Shown:
+    """Which objects are there, and which of them render."""
+
+    def __init__(self, scene, view_layer, tags):
+        self.placed = {obj.name_full for obj in view_layer.objects}
+        self.instanced = tags.objects.keys() - {obj.name_full for obj in scene.objects}
+        self._hidden = set(tags.objects) - self.instanced
+        self._look_into(view_layer.layer_collection)
+
+    def _look_into(self, layer_collection):
+        if layer_collection.exclude or layer_collection.collection.hide_render:
+            return
+        self._hidden -= {obj.name_full for obj in layer_collection.collection.objects}
+        for child in layer_collection.children:
+            self._look_into(child)
+
+    def hidden(self, obj):
+        """Whether an object, or every collection that holds it, is hidden in renders."""
+        return obj.name_full in self._hidden or hidden(obj)
+
+    def is_here(self, obj):
+        """Whether an object is in the scene and view layer, or instanced in it."""
+        return obj.name_full in self.placed or obj.name_full in self.instanced
+
+
+def _sets(scene, tags, shown):
     names = Counter(entry.name for entry in scene.ajar.light_sets)
     for name, count in names.items():
         if count > 1:
@@ -47,7 +73,7 @@ def _sets(scene, tags):
         if name not in names:
             text = f"is in light set {name}, which does not exist"
             yield warning(obj.name, text, "Assign it to a set of the scene's list")
-        elif hidden(obj):
+        elif shown.hidden(obj):
             continue
         elif shines(obj) or _instances(obj):
             lit.add(name)
@@ -64,13 +90,13 @@ def _instances(obj):
     return obj.instance_type == "COLLECTION" and obj.instance_collection is not None
 
 
-def _count_parts(tags):
+def _count_parts(tags, shown):
     """{(owner, open pose): how many objects with geometry are that part of it}."""
     found = Counter()
     for obj in tags.objects.values():
         part = tags.part(obj)
         solid = obj.type in GEOMETRY and obj.ajar.surface != "IGNORE"
-        if part is not None and (solid or _instances(obj)) and (part.open_pose or not hidden(obj)):
+        if part is not None and (solid or _instances(obj)) and (part.open_pose or not shown.hidden(obj)):
             found[part.owner, part.open_pose] += 1
     return found
 
@@ -89,18 +115,16 @@ def _owner(owner, parts):
         yield warning(owner.name, "is its own open pose", "Choose the object of the open leaf")
 
 
-def _pose(context, tags, owner, pose):
+def _pose(context, shown, owner, pose):
     if pose == owner:
         return
-    scene = context.scene
-    instanced = pose.name_full in tags.objects and pose.name not in scene.objects
-    if pose.name not in context.view_layer.objects and not instanced:
-        elsewhere = [other.name for other in pose.users_scene if other != scene]
+    if not shown.is_here(pose):
+        elsewhere = [other.name for other in pose.users_scene if other != context.scene]
         place = (
             f"stands in scene {elsewhere[0]}" if elsewhere else "is deleted or excluded from the view layer"
         )
         yield warning(owner.name, f"has the open pose {pose.name}, which {place}", "Bring it into this scene")
-    elif not hidden(pose):
+    elif not shown.hidden(pose):
         text = f"is the open pose of {owner.name} and renders too, so that renders show the door twice"
         yield warning(pose.name, text, "Hide it in renders: the bake takes it for the open door all the same")
     if pose.ajar.surface == "IGNORE":

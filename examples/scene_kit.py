@@ -53,6 +53,29 @@ def tag(owner, **values):
             setattr(settings, name, value)
 
 
+def attach(child, parent):
+    """Parents an object so that it stays where it is."""
+    child.parent = parent
+    child.matrix_parent_inverse = parent.matrix_basis.inverted()
+    return child
+
+
+def door(leaf, pose, **values):
+    """Makes a door of its closed leaf and of the leaf as it stands when open. The pose and what is
+    attached to it go to a hidden collection: they are there while the door is open."""
+    tag(leaf, movable="DOOR", open_pose=pose, **values)
+    hidden = bpy.data.collections.get("Open doors")
+    if hidden is None:
+        hidden = bpy.data.collections.new("Open doors")
+        bpy.context.scene.collection.children.link(hidden)
+        hidden.hide_render = hidden.hide_viewport = True
+    for obj in (pose, *pose.children):
+        for collection in obj.users_collection:
+            collection.objects.unlink(obj)
+        hidden.objects.link(obj)
+    return leaf
+
+
 def light_sets(*names):
     """Declares the sets that lights and glowing meshes are tagged with."""
     declared = getattr(getattr(bpy.context.scene, "ajar", None), "light_sets", None)

@@ -4,7 +4,8 @@
     blender -b --factory-startup --python-exit-code 1 -P examples/two_rooms.py -- OUT.blend
 
 The sun, its reflections in two rooms, a cutout lattice and stained glass, lamps of every kind and
-both roles, a neon sign, shared meshes, smooth and sharp normals, a text object.
+both roles in light sets, a neon sign that can be shot out, a door that opens, props that can vanish,
+shared meshes, smooth and sharp normals, a text object.
 """
 import math
 import os
@@ -114,11 +115,13 @@ def build_door(m):
             for side in (-1, 1):
                 x = sorted((side * 0.03, side * 0.042))
                 leaf.append(((x[0], y, bottom), (x[1], y + 0.34, bottom + height)))
-    door = kit.place("Door", kit.boxes("Door", leaf, m["door"]), (0, y0, 0))
-    kit.tag(door, movable="DOOR")
     handle = [((0.03, 0.07, 1.0), (0.08, 0.09, 1.03)), ((0.06, 0.07, 1.0), (0.08, 0.2, 1.03))]
-    knob = kit.place("Door handle", kit.boxes("Door handle", handle, m["steel"]), (0, y0, 0))
-    knob.parent, knob.location = door, (0, 0, 0)
+    leaf, handle = kit.boxes("Door", leaf, m["door"]), kit.boxes("Door handle", handle, m["steel"])
+    poses = []
+    for name, location, turn in (("Door", (0, y0, 0), 0), ("Door open", (-0.03, y0 + 0.05, 0), 98)):
+        poses.append(kit.place(name, leaf, location, turn))
+        kit.attach(kit.place(name + " handle", handle, location, turn), poses[-1])
+    kit.door(*poses)
     kit.text("Room sign", "ROOM 2", 0.26, m["black"], (0.12, (y0 + y1) / 2, 2.42), (90, 0, 90))
 
 
@@ -134,7 +137,8 @@ def chair_mesh(m):
 def build_sunlit_props(m):
     top = [((-0.75, -0.42, 0.71), (0.75, 0.42, 0.75))]
     legs = [((x, y, 0), (x + 0.07, y + 0.07, 0.71)) for x in (-0.7, 0.63) for y in (-0.37, 0.3)]
-    kit.place("Table", kit.boxes("Table", top + legs, m["planks"], 1.5), (2.35, 2.1, 0.012))
+    table = kit.place("Table", kit.boxes("Table", top + legs, m["planks"], 1.5), (2.35, 2.1, 0.012))
+    kit.tag(table, movable="TOGGLE")
     chair = chair_mesh(m)
     kit.place("Chair north", chair, (2.1, 2.72, 0.012), 8)
     kit.place("Chair south", chair, (2.7, 1.42, 0.012), 171)
@@ -143,8 +147,8 @@ def build_sunlit_props(m):
         "Rug top", [(1.2, 1.0, 0.012), (3.5, 1.0, 0.012), (3.5, 3.2, 0.012), (1.2, 3.2, 0.012)], m["rug"]
     )
     kit.box("Rug", (1.2, 1.0, 0), (3.5, 3.2, 0.01), m["rug"])
-    kit.sphere("Marble ball", (2.65, 2.2, 0.762 + 0.14), 0.14, m["marble"])
-    kit.sphere("Orange ball", (1.95, 1.95, 0.762 + 0.09), 0.09, m["ochre"], 12, 24)
+    kit.attach(kit.sphere("Marble ball", (2.65, 2.2, 0.762 + 0.14), 0.14, m["marble"]), table)
+    kit.attach(kit.sphere("Orange ball", (1.95, 1.95, 0.762 + 0.09), 0.09, m["ochre"], 12, 24), table)
     for number, x in enumerate((1.5, 3.0, 4.5), 1):
         kit.box(f"Beam {number}", (x - 0.09, 0, HEIGHT - 0.18), (x + 0.09, DEPTH, HEIGHT), m["planks"], 1.5)
     kit.box("Plinth", (0.1, 0.9, 0), (0.13, 3.67, 0.12), m["trim"])
@@ -166,8 +170,9 @@ def build_dark_props(m, crate):
         kit.place(f"Crate {number}", crate, location, turn)
     kit.cylinder("Column", (-2.9, 3.7, 0), 0.21, HEIGHT, m["marble"])
     kit.box("Column base", (-3.2, 3.4, 0), (-2.6, 4.0, 0.16), m["marble"])
-    kit.box("Pedestal", (-1.75, 1.75, 0), (-1.25, 2.25, 0.7), m["marble"])
-    kit.sphere("Steel ball", (-1.5, 2.0, 0.96), 0.26, m["steel"])
+    pedestal = kit.box("Pedestal", (-1.75, 1.75, 0), (-1.25, 2.25, 0.7), m["marble"])
+    kit.tag(pedestal, movable="TOGGLE")
+    kit.attach(kit.sphere("Steel ball", (-1.5, 2.0, 0.96), 0.26, m["steel"]), pedestal)
     kit.box("Shelf", (-4.99, 3.6, 0.9), (-4.7, 4.9, 0.94), m["planks"], 1.5)
     for y, size in ((3.8, 0.11), (4.15, 0.08), (4.5, 0.14)):
         kit.sphere(f"Shelf ball {size}", (-4.85, y, 0.94 + size), size, m["ochre"], 12, 24)
@@ -235,6 +240,7 @@ def build_lights(m):
         (0.75, 0.85, 1.0),
         (-1.5, 2.0, 0.9),
         "PRIMARY",
+        "spot",
         spot_size=math.radians(42),
         spot_blend=0.4,
         shadow_soft_size=0.05,
@@ -247,9 +253,10 @@ def build_lights(m):
         (1.0, 0.66, 0.34),
         None,
         "STATIC",
+        "shelf",
         shadow_soft_size=0.045,
     )
-    kit.sphere("Shelf bulb", (-4.6, 4.62, 1.75), 0.05, m["bulb"], 8, 16)
+    kit.tag(kit.sphere("Shelf bulb", (-4.6, 4.62, 1.75), 0.05, m["bulb"], 8, 16), light_set="shelf")
 
 
 def build_views(scene):
@@ -262,7 +269,7 @@ def main():
     scene = kit.start()
     scene.name = "Two rooms"
     kit.tag(scene, preset="PREVIEW")
-    kit.light_sets("ceiling", "neon")
+    kit.light_sets("ceiling", "neon", "shelf", "spot")
     m = make_materials()
     build_shell(m)
     build_windows(m)

@@ -245,7 +245,13 @@ def test_findings_about_doors():
     door, pose = quad("Door"), quad("Pose")
     door.ajar.movable, door.ajar.open_pose = "DOOR", pose
     assert found("Pose", "renders too")
-    pose.hide_render = True
+    attic = collection("Attic poses")
+    bpy.context.scene.collection.objects.unlink(pose)
+    attic.objects.link(pose)
+    assert found("Pose", "renders too")
+    attic.hide_render = True
+    assert not found("Pose", "") and not found("Door", "")
+    attic.hide_render, pose.hide_render = False, True
     assert not found("Pose", "") and not found("Door", "")
     pose.ajar.surface = "IGNORE"
     assert found("Pose", "Ignore")
@@ -259,7 +265,7 @@ def test_findings_about_doors():
     assert found("Second", "its own open pose")
     second.ajar.surface = "IGNORE"
     assert found("Second", "Ignore")
-    bpy.context.scene.collection.objects.unlink(pose)
+    attic.objects.unlink(pose)
     assert found("Door", "deleted")
     bpy.data.scenes.new("Attic").collection.objects.link(pose)
     assert found("Door", "Attic")
