@@ -22,3 +22,12 @@ def library():
     path = Path(os.environ.get("AJAR_LIBRARY", ROOT / "build" / "release" / "lib" / "libajar.so"))
     assert path.is_file(), f"{path} is missing: run ./dev build"
     return path
+
+
+@pytest.fixture(scope="session")
+def runtime_library():
+    """Path of the run-time library; a test that needs it fails, not skips, without one."""
+    built = ROOT / "build" / "release" / "lib" / "libajar_runtime.so"
+    path = Path(os.environ.get("AJAR_RUNTIME_LIBRARY", built))
+    assert path.is_file(), f"{path} is missing: run ./dev build"
+    return path

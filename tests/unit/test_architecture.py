@@ -8,6 +8,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "native" / "src"
+RUNTIME = ROOT / "native" / "runtime"
 ORDER = [
     "base",
     "scene",
@@ -120,9 +121,9 @@ def test_the_header_compiles_alone_as_c_and_cpp(compiler):
     assert result.returncode == 0, result.stderr.decode()
 
 
-def declared_functions():
-    header = (ROOT / "native" / "include" / "ajar" / "ajar.h").read_text(encoding="utf-8")
-    return set(re.findall(r"^AJAR_API [\w\s*]*?\b(ajar_\w+)\(", header, re.MULTILINE))
+def declared_functions(header=ROOT / "native" / "include" / "ajar" / "ajar.h", mark="AJAR_API"):
+    text = header.read_text(encoding="utf-8")
+    return set(re.findall(rf"^{mark} [\w\s*]*?\b(ajar_\w+)\(", text, re.MULTILINE))
 
 
 def exported_symbols(library):
@@ -134,6 +135,46 @@ def exported_symbols(library):
 
 def test_the_library_exports_what_the_header_declares_and_nothing_else(library):
     assert exported_symbols(library) == declared_functions()
+
+
+@pytest.mark.parametrize(
+    "compiler", [("gcc", "-std=c99", "-xc"), ("g++", "-std=c++11", "-xc++"), ("g++", "-std=c++20", "-xc++")]
+)
+def test_the_runtime_header_compiles_alone_as_c_and_cpp(compiler):
+    command = [*compiler, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
+    command += [f"-I{RUNTIME / 'include'}", "-"]
+    program = b'#include "ajar_runtime.h"\nint main(void) { return AJAR_RUNTIME_OK; }\n'
+    result = subprocess.run(command, input=program, capture_output=True)
+    assert result.returncode == 0, result.stderr.decode()
+
+
+def test_the_runtime_exports_what_its_header_declares_and_nothing_else(runtime_library):
+    header = RUNTIME / "include" / "ajar_runtime.h"
+    assert exported_symbols(runtime_library) == declared_functions(header, "AJAR_RUNTIME_API")
+
+
+def test_the_runtime_needs_the_standard_library_alone(runtime_library):
+    own = {p.name for p in RUNTIME.rglob("*.h")}
+    system = {"fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h", "stddef.h", "stdint.h"}
+    offenders = [
+        f"{path.name} includes {include}"
+        for path in RUNTIME.rglob("*")
+        if path.suffix in (".h", ".cpp")
+        for include in includes(path)
+        if include not in own | system and not re.fullmatch(r"[a-z_]+", include)
+    ]
+    assert not offenders
+    needed = subprocess.run(["readelf", "-d", runtime_library], capture_output=True, text=True, check=True)
+    libraries = set(re.findall(r"\(NEEDED\).*\[(\w+)", needed.stdout))
+    assert libraries <= {"libstdc", "libm", "libgcc_s", "libc", "ld"}
+
+
+def test_the_runtime_is_free_for_games():
+    """Apache-2.0 in every file of it, and the licence's text beside them."""
+    assert (RUNTIME / "LICENSE").read_bytes() == (ROOT / "schemas" / "LICENSE").read_bytes()
+    for path in RUNTIME.rglob("*"):
+        if path.is_file() and path.name != "LICENSE":
+            assert "SPDX-License-Identifier: Apache-2.0" in path.read_text(encoding="utf-8")[:100], path
 
 
 def test_the_addon_reaches_blender_only_where_it_may():
