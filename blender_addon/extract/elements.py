@@ -38,7 +38,7 @@ class ElementTable:
         for entry in ajar(scene, "light_sets") or ():
             self._sets.setdefault(entry.name, light_set_element(entry))
         self._movables = {}
-        self._taken = {(kind_of(o), o.name_full) for o in self.tags.objects.values() if kind_of(o)}
+        self._names = movable_names(scene, self.tags)
         self._links = []
 
     def link_movable(self, record, obj, instancer=None, occurrence=""):
@@ -107,10 +107,7 @@ class ElementTable:
     def _movable(self, owner, place, occurrence):
         key = (type(owner).__name__, owner.name_full, place, occurrence)
         if key not in self._movables:
-            name = place + owner.name_full + occurrence
-            kind = kind_of(owner)
-            if not place and owner.bl_rna.identifier == "Collection" and (kind, name) in self._taken:
-                name += " (collection)"
+            name = place + self._names.get(owner, owner.name_full) + occurrence
             self._movables[key] = movable_element(owner, name)
         return self._movables[key]
 
@@ -123,9 +120,9 @@ class ElementTable:
     def _warn_of_movables(self):
         found = {}
         for element in self._movables.values():
-            found.setdefault(element.owner.name_full, set()).update(element.parts)
+            found.setdefault(element.owner, set()).update(element.parts)
         for owner in self.tags.owners():
-            self._warn_of_owner(owner, found.get(owner.name_full, set()))
+            self._warn_of_owner(owner, found.get(owner, set()))
         for obj in self.tags.objects.values():
             self._warn_of_nesting(obj)
         for owner, pose, first in self.tags.shared_poses:
@@ -154,6 +151,20 @@ class ElementTable:
             f"is a {kind_of(obj)} of its own inside {kind_of(outer)} '{outer.name}', which does not move it"
         )
         self.warnings.add(obj.name, text)
+
+
+def movable_names(scene, tags):
+    """{tagged object or collection: name of its element}. Games look elements up by name, so it says
+    more where a light set, or an object and a collection, have the same."""
+    taken, names = {entry.name for entry in ajar(scene, "light_sets") or ()}, {}
+    for owner in tags.owners():
+        name = owner.name_full
+        if name in taken:
+            held = owner.bl_rna.identifier == "Collection"
+            name += " (collection)" if held else f" ({kind_of(owner)})"
+        names[owner] = name
+        taken.add(name)
+    return names
 
 
 def light_set_element(entry):

@@ -240,6 +240,17 @@ def test_toggles_and_nesting():
     assert shot.warned("Flap", "toggle 'Cupboard'") and shot.warned("Inside", "light set")
 
 
+def test_names_are_unique():
+    """Games look elements up by name, whatever their kind."""
+    light_set("Lamp")
+    lamp("Bulb", "Lamp")
+    stand, held = quad("Lamp"), collection("Lamp")
+    stand.ajar.movable = held.ajar.movable = "TOGGLE"
+    quad("Cloth", collection=held)
+    names = [name for _kind, name in Shot().names()]
+    assert sorted(names) == ["Lamp", "Lamp (collection)", "Lamp (toggle)"], names
+
+
 def test_toggle_of_an_instancer():
     prefab = bpy.data.collections.new("Prop")
     quad("Seat", collection=prefab)
