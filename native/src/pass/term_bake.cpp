@@ -7,6 +7,7 @@ namespace {
 
 constexpr uint32_t kUnseenSamples = 1;      ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
+constexpr float kPruneShare = 0.1f;         ///< of a term's threshold that its light must reach to be reflected
 constexpr float kPlanShare = 0.1f;          ///< terms below this share of a tile's light do not drive its ray counts
 
 uint32_t order_of(uint32_t combinations) {
@@ -101,6 +102,21 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(s_.receivers.count())));
     source_ = source_.first.size() > 1 ? add_rows(source_, current_) : current_;
+    if (direct_.first.size() == 1) direct_ = current_;
+    find_thresholds();
+    if (settings_.term_threshold > 0.0f) current_ = prune(current_);
+}
+
+/// Leaves out what is too dim to matter once reflected: a small share of what a texel would keep.
+ReceiverRows TermBaker::prune(const ReceiverRows& rows) const {
+    ReceiverRows kept;
+    kept.first.reserve(rows.first.size());
+    for (uint32_t r = 0; r + 1 < rows.first.size(); ++r) {
+        for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e)
+            if (table_[e->term].is_base() || std::abs(luminance(e->color)) > kPruneShare * threshold_[e->term]) kept.entries.push_back(*e);
+        kept.first.push_back(kept.entries.size());
+    }
+    return kept;
 }
 
 void TermBaker::direct_source() {
@@ -126,7 +142,6 @@ void TermBaker::direct_source() {
         progress_.add_rays(rays);
     });
     take(tiles);
-    direct_ = current_;
 }
 
 void TermBaker::bounce(uint32_t index) {
@@ -160,25 +175,38 @@ EmitterSet TermBaker::find_bright_texels() {
     return s_.emitters.with_bright_texels(std::move(bright));
 }
 
-/// A texel keeps a term if the term lights it directly or is brighter there than a share of its
-/// mean indirect light where it lights directly (Seyb et al. 2020, section 3.2).
+/// A texel keeps a light set's term if the set lights it directly or is brighter there than a share
+/// of its mean indirect light where it lights directly (Seyb et al. 2020, section 3.2). A door, toggle
+/// or combination changes the light of its set, or of the base, and is measured against that.
 void TermBaker::find_thresholds() {
     std::vector<double> indirect(table_.count(), 0.0), lit(table_.count(), 0.0), all(table_.count(), 0.0), met(table_.count(), 0.0);
     for (uint32_t r = 0; r + 1 < source_.first.size(); ++r)
         for (const TermColor* e = source_.begin(r); e != source_.end(r); ++e) {
             const Vec3 direct = direct_.of(r, e->term);
-            const double value = std::abs(luminance(e->color - direct));
             all[e->term] += std::abs(luminance(e->color));
             met[e->term] += 1.0;
             if (direct == Vec3(0.0f)) continue;
-            indirect[e->term] += value;
+            indirect[e->term] += std::abs(luminance(e->color - direct));
             lit[e->term] += 1.0;
         }
     threshold_.assign(table_.count(), 0.0f);
-    for (uint32_t t = 1; t < table_.count(); ++t) {
-        const double mean = lit[t] > 0.0 && indirect[t] > 0.0 ? indirect[t] / lit[t] : met[t] > 0.0 ? all[t] / met[t] : 0.0;
+    for (uint32_t t = 0; t < table_.count(); ++t) {
+        const uint32_t changed = table_.find(Term(table_[t].set()));
+        if (changed == TermTable::kUnknown) continue;
+        const double mean = indirect[changed] > 0.0 ? indirect[changed] / lit[changed] : met[changed] > 0.0 ? all[changed] / met[changed] : 0.0;
         threshold_[t] = settings_.term_threshold * static_cast<float>(mean);
     }
+}
+
+/// Whether a receiver keeps a term's light. Products of several elements must also stand out of
+/// their noise: their light is mostly a small difference.
+bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& light) const {
+    const uint32_t id = table_.find(term);
+    if (id == TermTable::kUnknown) return false;
+    const bool is_set = term.order() == 1 && term.set() != kNoElement;
+    if (is_set && direct_.of(receiver, id) != Vec3(0.0f)) return true;
+    const float level = std::abs(luminance(light.irradiance));
+    return level > threshold_[id] && (term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL || level > light.standard_error);
 }
 
 /// Light sets that shine on the tile directly, as the source pass saw it.
@@ -287,11 +315,8 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
                 continue;
             }
             if (light.irradiance == Vec3(0.0f)) continue;
-            const uint32_t id = table_.find(t.terms[term]);
-            const float level = std::abs(luminance(light.irradiance));
-            const bool lit = id != TermTable::kUnknown && direct_.of(static_cast<uint32_t>(r), id) != Vec3(0.0f);
-            const bool kept = lit || id == TermTable::kUnknown ? lit : level > threshold_[id];
-            (kept ? out.kept : out.dropped)[term] += level;
+            const bool kept = keeps(static_cast<uint32_t>(r), t.terms[term], light);
+            (kept ? out.kept : out.dropped)[term] += std::abs(luminance(light.irradiance));
             if (kept) out.light.push_back(light);
         }
         out.count.push_back(static_cast<uint32_t>(out.light.size() - before));
@@ -372,8 +397,7 @@ BakeResult TermBaker::run() {
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     for (uint32_t b = 1; b < settings_.bounces; ++b) bounce(b);
-    radiance_ = radiance_rows(source_, s_.receivers, s_.scene.texel_count());
-    find_thresholds();
+    radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_) : source_, s_.receivers, s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     const std::vector<RayPlan> plan = plan_rays();

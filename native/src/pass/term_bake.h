@@ -24,6 +24,8 @@ private:
     void take(std::vector<TileRows>& tiles);
     EmitterSet find_bright_texels();
     void find_thresholds();
+    bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
+    ReceiverRows prune(const ReceiverRows& rows) const;
     std::vector<RayPlan> plan_rays();
     PilotResult pilot_tile(const Tile& tile, const RayPlan& rays, uint32_t index);
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;

@@ -96,7 +96,8 @@ public:
         require(element, state);
         assumed_ = 1;
     }
-    bool trivial() const { return count_ == assumed_; }
+    /// Every term passes as it is.
+    bool empty() const { return count_ == 0; }
     bool overflowed() const { return overflowed_; }
 
     /// Calls emit(term, sign) for every term of condition * term: w factors multiply, each 1 - w

@@ -64,11 +64,12 @@ public:
     uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
     void light(const Through& through, uint32_t set, const Vec3& radiance) { arrive(through.condition, Term(set), through.color * radiance); }
     void texel(const Through& through, uint32_t texel, float weight) {
-        for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) {
-            const Vec3 light = through.color * e->color * weight;
-            if (!Switches) sums_.arrive(sums_.slot_of(e->term), light);
-            else arrive(through.condition, table_[e->term], light);
-        }
+        const Vec3 scale = through.color * weight;
+        // Most ways meet no switchable surface: each term passes as it is.
+        if (!Switches || through.condition.empty())
+            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) sums_.arrive(sums_.slot_of(e->term), e->color * scale);
+        else
+            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) arrive(through.condition, table_[e->term], e->color * scale);
     }
     void add_inside(uint32_t lane) { sums_.add_inside(lane); }
     void add_cosine(uint32_t lane, float value) { sums_.add_cosine(lane, value); }
