@@ -15,7 +15,9 @@ bl_info = {
 def _modules():
     """Modules with register() and unregister(), in order."""
     from . import job, operators, panels, properties, versioning
-    return properties, job, operators, panels, versioning
+    from .apply import live
+
+    return properties, job, operators, panels, versioning, live
 
 
 def register():

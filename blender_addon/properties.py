@@ -17,6 +17,7 @@ from bpy.props import (
 from bpy.types import PropertyGroup
 
 from . import fields, light_sets
+from .apply import live
 
 _HIDDEN = {"HIDDEN"}
 _NUMBERS = {"int": IntProperty, "float": FloatProperty}
@@ -31,7 +32,7 @@ def _property(field):
         if field.unit == "rad":
             about["subtype"] = "ANGLE"
         elif field.name in ("openness", "presence"):
-            about["subtype"] = "FACTOR"
+            about.update(subtype="FACTOR", update=live.weight_changed)
         elif field.name == "noise_target":
             about.update(precision=4, step=0.1)
         return _NUMBERS[field.kind](**about)
@@ -53,11 +54,13 @@ class AJAR_LightSet(PropertyGroup):
 
     name: StringProperty(name="Name", default="Set", update=light_sets.keep_name)
     known_name: StringProperty(options=_HIDDEN, description="Name that objects are tagged with")
+    baked_name: StringProperty(options=_HIDDEN, description="Its name in the last bake")
     weight: FloatProperty(
         name="Weight",
         default=1.0,
         min=0.0,
         soft_max=2.0,
+        update=live.weight_changed,
         description="Strength of this set's light, 1 as baked",
     )
     color: FloatVectorProperty(
@@ -67,6 +70,7 @@ class AJAR_LightSet(PropertyGroup):
         default=(1.0, 1.0, 1.0),
         min=0.0,
         soft_max=1.0,
+        update=live.weight_changed,
         description="Tint of this set's light at run time, white as baked",
     )
     combine: BoolProperty(
@@ -127,6 +131,11 @@ class AJAR_ObjectSettings(PropertyGroup):
         "preview_hidden": BoolProperty(options=_HIDDEN),
         "saved_hide_viewport": BoolProperty(options=_HIDDEN),
         "saved_hide_render": BoolProperty(options=_HIDDEN),
+        "saved_eyes": StringProperty(options=_HIDDEN),
+        "saved_rays": IntProperty(default=-1, options=_HIDDEN),
+        "saved_instance_type": StringProperty(options=_HIDDEN),
+        "saved_light": PointerProperty(type=bpy.types.Light, options=_HIDDEN),
+        "baked_name": StringProperty(options=_HIDDEN, description="Name of its element in the last bake"),
     }
 
 
@@ -140,6 +149,7 @@ class AJAR_CollectionSettings(PropertyGroup):
             type=bpy.types.Object,
             description="Object that stands where this door is when it is open, with its children",
         ),
+        "baked_name": StringProperty(options=_HIDDEN, description="Name of its element in the last bake"),
     }
 
 
@@ -164,6 +174,7 @@ class AJAR_ImageSettings(PropertyGroup):
     """Image.ajar: marks the images that a bake made."""
 
     is_page: BoolProperty(options=_HIDDEN)
+    live_page: IntProperty(default=-1, min=-2, options=_HIDDEN)
 
 
 class AJAR_JobState(PropertyGroup):

@@ -9,16 +9,18 @@ from .record import absolute_path, load_json, relative_path
 
 _LINEAR = ("Linear Rec.709", "Linear")
 _DATA = ("Non-Color", "Raw")
+NOT_LIVE, MEAN = -1, -2  # Image.ajar.live_page of other images, and of the mean of all pages
 
 
 class PageLight:
     """One page for the preview: its image and the mean irradiance of all pages. image None stands
     for surfaces without a lightmap."""
 
-    def __init__(self, index, image, mean):
+    def __init__(self, index, image, mean, mean_image=None):
         self.index = index
         self.image = image
         self.mean = mean
+        self.mean_image = mean_image  # one texel that follows the weights, in place of mean
 
 
 def load_pages(package):
@@ -78,3 +80,62 @@ def _sum_of_lit_texels(image):
     colors = pixels.reshape(-1, image.channels)[:, :3]
     lit = colors[colors.any(axis=1) & numpy.isfinite(colors).all(axis=1)]
     return numpy.append(lit.sum(axis=0, dtype=numpy.float64), len(lit))
+
+
+# ---- images that follow the weights ---------------------------------------------------------
+
+
+def live_images():
+    """All of them; one that no material shows is not saved with the file."""
+    return [i for i in bpy.data.images if i.library is None and i.ajar.live_page != NOT_LIVE]
+
+
+def find_live(page):
+    """The image of a page (or MEAN) that follows the weights, or None."""
+    return next((image for image in live_images() if image.ajar.live_page == page), None)
+
+
+def make_live(page, size):
+    """find_live(page), made first if there is none. ValueError if it has another size."""
+    image = find_live(page)
+    if image is None:
+        name = "Ajar.live.mean" if page == MEAN else f"Ajar.live.{page}"
+        image = bpy.data.images.new(name, *size, alpha=False, float_buffer=True)
+        image.ajar.is_page, image.ajar.live_page = True, page
+        set_color_space(image, _LINEAR)
+    if tuple(image.size) != tuple(size):
+        raise ValueError(f"the package has pages of another size than this file: bake again ({image.name})")
+    return image
+
+
+def fill(page, pixels):
+    """Writes RGBA floats, bottom row first."""
+    image = find_live(page)
+    image.pixels.foreach_set(pixels)
+    image.update()
+
+
+def fill_mean(count):
+    """Brings the mean image up to the pages."""
+    sums = sum(_sum_of_lit_texels(find_live(page)) for page in range(count))
+    fill(MEAN, numpy.append(sums[:3] / max(sums[3], 1.0), 1.0).astype(numpy.float32))
+
+
+def live_pages(count):
+    """PageLight of every page, and one for surfaces without a lightmap, that follow the weights."""
+    mean = find_live(MEAN)
+    color = tuple(mean.pixels[:3])
+    return [PageLight(i, find_live(i), color) for i in range(count)], PageLight(-1, None, color, mean)
+
+
+def pack_live():
+    """Puts what the images show into the file, so that it is there when the file is opened again."""
+    for image in live_images():
+        if image.is_dirty:
+            image.pack()
+
+
+def remove_live():
+    """Removes the images."""
+    for image in live_images():
+        bpy.data.images.remove(image)

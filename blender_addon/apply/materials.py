@@ -12,12 +12,14 @@ from .expression import is_constant
 from .groups import expand_group
 
 PLACEMENT = "ajar_placement"  # object custom property: uv scale x, y, offset x, y
+GLOW = "ajar_glow"  # object custom property: strength of its light set, red, green, blue, 1
 
 
-def preview_material(original, page, placed, warnings):
+def preview_material(original, page, placed, warnings, glow=False):
     """The preview of a material on a page. page is None (no lightmap) or a PageLight; placed says
-    that objects carry a scale and offset of their own. Made once per combination."""
-    key = f"{page.index if page.image else 'mean'}{'i' if placed else ''}{'' if original else 'e'}"
+    that objects carry a scale and offset of their own, glow that they carry a strength of their
+    emission. Made once per combination."""
+    key = f"{page.index if page.image else 'mean'}{'i' if placed else ''}{'' if original else 'e'}{'g' if glow else ''}"
     for material in bpy.data.materials:
         mark = material.ajar
         if mark.is_preview and mark.source == original and mark.key == key:
@@ -33,7 +35,7 @@ def preview_material(original, page, placed, warnings):
     if not material.use_nodes:
         _use_plain_color(material)
     _keep_out_of_light_sampling(material)
-    _rewire(material, page, placed, warnings)
+    _rewire(material, page, placed, warnings, glow)
     return material
 
 
@@ -58,7 +60,7 @@ def _keep_out_of_light_sampling(material):
         cycles.sample_as_light = False
 
 
-def _rewire(material, page, placed, warnings):
+def _rewire(material, page, placed, warnings, glow):
     tree = material.node_tree
     outputs = [node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputMaterial"]
     if not outputs:
@@ -68,35 +70,58 @@ def _rewire(material, page, placed, warnings):
         reader = ClosureReader(tree, expand_group)
         surface = reader.read(output.inputs["Surface"])
         irradiance = irradiance or _irradiance(reader.expression, page, placed)
-        original = output.inputs["Surface"].links[0].from_socket if output.inputs["Surface"].is_linked else None
-        if original is not None and _is_opaque(surface):
+        original = (
+            output.inputs["Surface"].links[0].from_socket if output.inputs["Surface"].is_linked else None
+        )
+        if glow:
+            surface.emission = reader.expression.multiply(surface.emission, _strength(reader.expression))
+        if original is not None and _is_opaque(surface) and not glow:
             closure = _opaque_closure(reader.expression, surface, irradiance, original)
         else:
             closure = _lit_closure(reader.expression, surface, irradiance)
         tree.links.new(closure, output.inputs["Surface"])
         if reader.unknown:
             source = material.ajar.source
-            warnings.append((source.name, "the preview shows these nodes black: "
-                             + ", ".join(sorted(set(reader.unknown)))))
+            warnings.append(
+                (
+                    source.name,
+                    "the preview shows these nodes black: " + ", ".join(sorted(set(reader.unknown))),
+                )
+            )
 
 
 def _irradiance(expression, page, placed):
     """Irradiance of a lightmapped surface from its page, or the constant of an unmapped one."""
-    if page.image is None:
-        return tuple(page.mean)
     tree = expression.tree
+    if page.image is None and page.mean_image is None:
+        return tuple(page.mean)
+    if page.image is None:
+        return _image(expression, page.mean_image).outputs["Color"]
     coordinates = expression.node("ShaderNodeUVMap")
     coordinates.uv_map = UV_LAYER
     uv = coordinates.outputs["UV"]
     if placed:
         uv = _place(expression, uv)
-    image = expression.node("ShaderNodeTexImage")
-    image.image = page.image
-    image.interpolation = "Linear"
-    image.extension = "EXTEND"
-    image.name = "Ajar Lightmap"
+    image = _image(expression, page.image)
     tree.links.new(uv, image.inputs["Vector"])
     return image.outputs["Color"]
+
+
+def _image(expression, image):
+    node = expression.node("ShaderNodeTexImage")
+    node.image = image
+    node.interpolation = "Linear"
+    node.extension = "EXTEND"
+    node.name = "Ajar Lightmap"
+    return node
+
+
+def _strength(expression):
+    """Strength of the object's light set as a colour."""
+    attribute = expression.node("ShaderNodeAttribute")
+    attribute.attribute_type = "OBJECT"
+    attribute.attribute_name = GLOW
+    return attribute.outputs["Color"]
 
 
 def _place(expression, uv):

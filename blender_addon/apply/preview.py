@@ -7,9 +7,9 @@ reloading do not break the way back.
 """
 import bpy
 
-from . import world
-from .images import load_pages
-from .materials import PLACEMENT, UV_LAYER, preview_material
+from . import ghosts, lamps, live, world
+from .images import live_pages, load_pages, remove_live
+from .materials import GLOW, PLACEMENT, UV_LAYER, preview_material
 from .record import absolute_path, read_record
 
 _SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -23,17 +23,25 @@ def show(context):
     if not record.get("package"):
         raise ValueError("nothing is baked yet: press Bake")
     hide()
-    pages, unmapped = load_pages(absolute_path(record["package"]))
     warnings = []
+    session = live.start(scene, warnings)
+    if session is None:
+        pages, unmapped = load_pages(absolute_path(record["package"]))
+    else:
+        pages, unmapped = live_pages(session.runtime.page_count())
+    glowing = session.looks.glowing() if session is not None else ()
     for obj in _shown_objects(context):
         if obj.type in _SURFACES and obj.library:
             warnings.append((obj.name, "linked from a library: shown without baked light"))
         elif obj.type in _SURFACES:
-            _swap_slots(obj, _page_of(obj, pages, unmapped), scene, warnings)
+            _swap_slots(obj, _page_of(obj, pages, unmapped), scene, warnings, obj.name in glowing)
         elif obj.type == "LIGHT" and obj.library is None and obj.ajar.light_role in ("STATIC", "OFF"):
-            _hide_light(obj)
+            ghosts.hold_flags(obj, True)
     world.show_camera_only(scene)
     scene.ajar.preview = True
+    if session is not None:
+        session.looks.prepare()
+        session.refresh(everything=True)
     return warnings
 
 
@@ -49,11 +57,13 @@ def _shown_objects(context):
 
 def hide():
     """Turns the preview off: every slot, lamp and world as it was. Safe to call at any time."""
+    live.stop()
+    ghosts.clear_stage()
     for obj in bpy.data.objects:
-        if obj.ajar.preview_slots:
+        if obj.library is None:
             _restore_slots(obj)
-        if obj.ajar.preview_hidden:
-            _restore_light(obj)
+            ghosts.restore(obj)
+            lamps.restore(obj)
     for scene in bpy.data.scenes:
         for entry in scene.ajar.preview_meshes:
             _drop_added_slot(entry.data)
@@ -63,6 +73,7 @@ def hide():
     for collection in (bpy.data.materials, bpy.data.node_groups):
         for block in [block for block in collection if _is_preview(block)]:
             collection.remove(block)
+    remove_live()
 
 
 def _is_preview(block):
@@ -77,7 +88,7 @@ def _page_of(obj, pages, unmapped):
     return pages[page] if mapped and 0 <= page < len(pages) else unmapped
 
 
-def _swap_slots(obj, page, scene, warnings):
+def _swap_slots(obj, page, scene, warnings, glow):
     if not obj.material_slots and not _add_slot(obj, scene):
         return
     placed = page.image is not None and is_placed(obj)
@@ -89,7 +100,7 @@ def _swap_slots(obj, page, scene, warnings):
         entry.link = slot.link
         slot.link = "OBJECT"
         entry.material = slot.material
-        entry.preview = preview_material(shown, page, placed, warnings)
+        entry.preview = preview_material(shown, page, placed, warnings, glow)
         slot.material = entry.preview
 
 
@@ -105,8 +116,9 @@ def _restore_slots(obj):
             slot.material = entry.material
             slot.link = entry.link
     obj.ajar.preview_slots.clear()
-    if PLACEMENT in obj:
-        del obj[PLACEMENT]
+    for name in (PLACEMENT, GLOW):
+        if name in obj:
+            del obj[name]
 
 
 def _ours(material, entry):
@@ -127,19 +139,3 @@ def _add_slot(obj, scene):
 def _drop_added_slot(data):
     if data is not None and len(data.materials) == 1 and data.materials[0] is None:
         data.materials.clear()
-
-
-def _hide_light(obj):
-    saved = obj.ajar
-    if saved.preview_hidden:
-        return
-    saved.preview_hidden = True
-    saved.saved_hide_viewport = obj.hide_viewport
-    saved.saved_hide_render = obj.hide_render
-    obj.hide_viewport = obj.hide_render = True
-
-
-def _restore_light(obj):
-    obj.hide_viewport = obj.ajar.saved_hide_viewport
-    obj.hide_render = obj.ajar.saved_hide_render
-    obj.ajar.preview_hidden = False
