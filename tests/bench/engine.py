@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine from Python, in this process: scenes from saved snapshots, bakes as arrays."""
+import contextlib
+import ctypes
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+from blender_addon.bridge import abi, scene_builder  # noqa: E402
+from blender_addon.bridge.library import check, load_library  # noqa: E402
+from blender_addon.bridge.snapshot_io import Reader  # noqa: E402
+
+LAYER_IRRADIANCE, LAYER_VALIDITY = 0, 3
+
+
+@contextlib.contextmanager
+def snapshot_scene(library, folder):
+    """(handle of the committed scene, what snapshot.json says) of a snapshot folder."""
+    with Reader(folder, "snapshot") as reader:
+        builder = scene_builder.SceneBuilder(library, reader)
+        try:
+            builder.build()
+            yield builder.scene, reader.data
+        finally:
+            builder.release()
+
+
+class Bake:
+    """One finished bake of a snapshot. seconds is wall-clock from reading the files to finished pages."""
+
+    def __init__(self, library, folder, **settings):
+        begin = time.perf_counter()
+        self._library, self._job = library, abi.Handle()
+        with snapshot_scene(library, folder) as (scene, data):
+            self.pages = data["pages"]
+            filled = scene_builder.fill_settings(library, {**data["settings"], **settings})
+            check(library, library.ajar_job_start(scene, ctypes.byref(filled), ctypes.byref(self._job)))
+        result = library.ajar_job_wait(self._job, -1.0)
+        if result != abi.OK:
+            raise RuntimeError(f"the bake ended with {result}")
+        self.seconds = time.perf_counter() - begin
+
+    def layer(self, page, which):
+        """(height, width, channels) float32 array, bottom row first."""
+        sizes = [ctypes.c_uint32() for _ in range(3)]
+        check(
+            self._library,
+            self._library.ajar_job_layer_size(self._job, page, which, *map(ctypes.byref, sizes)),
+        )
+        width, height, channels = (s.value for s in sizes)
+        values = np.empty((height, width, channels), np.float32)
+        pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
+        check(self._library, self._library.ajar_job_read_layer(self._job, page, which, pointer, values.size))
+        return values
+
+    def progress(self):
+        """Rays traced and the like."""
+        progress = abi.Progress()
+        self._library.ajar_progress_init(ctypes.byref(progress))
+        check(self._library, self._library.ajar_job_poll(self._job, ctypes.byref(progress)))
+        return progress
+
+    def close(self):
+        """Frees the result."""
+        self._library.ajar_job_release(ctypes.byref(self._job))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
