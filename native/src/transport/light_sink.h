@@ -51,7 +51,8 @@ public:
     };
 
     TermSink(const Snapshot& scene, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums)
-        : scene_(scene), rows_(rows), table_(table), limits_(limits), sums_(sums) {}
+        : scene_(scene), rows_(rows), table_(table), limits_(limits), sums_(sums),
+          all_combine_(std::all_of(scene.elements.begin(), scene.elements.end(), [](const Element& e) { return e.combines; })) {}
 
     /// A receiver on a switchable surface matters only while that surface is there.
     Through start(const Snapshot& scene, uint32_t triangle) const {
@@ -78,7 +79,7 @@ public:
 private:
     void arrive(const Condition& condition, const Term& term, const Vec3& light) {
         condition.expand(term, limits_.order, [&](const Term& product, float sign) {
-            if (product.order() < 2 || may_combine(product)) sums_.arrive(sums_.slot_of(product), light * sign);
+            if (all_combine_ || product.order() < 2 || may_combine(product)) sums_.arrive(sums_.slot_of(product), light * sign);
         });
     }
     bool may_combine(const Term& term) const {
@@ -93,6 +94,7 @@ private:
     const TermTable& table_;
     TermLimits limits_;
     TermSums& sums_;
+    bool all_combine_; ///< no element opts out
 };
 
 /// Light that passes switchable surfaces: each is absent, or there and perhaps lets some through.

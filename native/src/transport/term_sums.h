@@ -40,11 +40,9 @@ public:
         return s;
     }
     uint32_t slot_of(const Term& term) {
-        const uint32_t id = table_.find(term);
-        if (id != TermTable::kUnknown) return slot_of(id);
-        const auto [it, made] = slot_of_new_.try_emplace(term, slots());
-        if (made) make_slot(term);
-        return it->second;
+        Recent& recent = recent_[TermHash()(term) % kRecent];
+        if (recent.slot == kNone || recent.term != term) recent = {term, look_up(term)};
+        return recent.slot;
     }
     /// Slot of a term that never arrived is kNone.
     uint32_t find(const Term& term) const {
@@ -80,6 +78,20 @@ private:
         uint32_t slot;
         Vec3 light;
     };
+    /// A product of a condition and a term that was asked for lately: few of them come again and again.
+    struct Recent {
+        Term term;
+        uint32_t slot = kNone;
+    };
+    static constexpr size_t kRecent = 1024;
+
+    uint32_t look_up(const Term& term) {
+        const uint32_t id = table_.find(term);
+        if (id != TermTable::kUnknown) return slot_of(id);
+        const auto [it, made] = slot_of_new_.try_emplace(term, slots());
+        if (made) make_slot(term);
+        return it->second;
+    }
     uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
         blocks_.emplace_back(kTileReceivers);
@@ -96,6 +108,7 @@ private:
     std::vector<float> cosine_sum_, inside_;
     std::vector<uint32_t> mark_;
     std::vector<Pending> pending_;
+    std::vector<Recent> recent_{kRecent};
 };
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
