@@ -20,8 +20,11 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the same files give the same zip
 
 def files():
     """Files of the add-on, relative to its folder, in a fixed order."""
-    return sorted(path.relative_to(FOLDER) for path in FOLDER.rglob("*")
-                  if path.suffix in _KINDS and path.name not in _LEFT_OUT and "__pycache__" not in path.parts)
+    return sorted(
+        path.relative_to(FOLDER)
+        for path in FOLDER.rglob("*")
+        if path.suffix in _KINDS and path.name not in _LEFT_OUT and "__pycache__" not in path.parts
+    )
 
 
 def write_zip(target, libraries, extension=False):
@@ -47,7 +50,9 @@ def main():
     parser = argparse.ArgumentParser(description="Zip the Ajar add-on")
     parser.add_argument("target", type=Path)
     parser.add_argument("--library", type=Path, default=LIBRARY, help="the engine")
-    parser.add_argument("--runtime", type=Path, default=RUNTIME, help="the run-time library, for the live preview")
+    parser.add_argument(
+        "--runtime", type=Path, default=RUNTIME, help="the run-time library, for the live preview"
+    )
     parser.add_argument("--extension", action="store_true", help="lay it out as an extension (Blender 4.2+)")
     options = parser.parse_args()
     libraries = [options.library, options.runtime]

@@ -10,9 +10,16 @@ from .expression import ONE, ZERO, Expression, is_constant
 _ALBEDO_A = (1.4682, -2.658, 0.6845, -0.0389, 0.9514)
 _ALBEDO_B = (-0.2456, 0.6084, -0.4619, 0.0561, 0.0456)
 _COLOR_ONLY = {  # the bake takes these as diffuse, too
-    "ShaderNodeBsdfDiffuse", "ShaderNodeBsdfTranslucent", "ShaderNodeSubsurfaceScattering",
-    "ShaderNodeBsdfToon", "ShaderNodeBsdfVelvet", "ShaderNodeBsdfSheen", "ShaderNodeBsdfHair",
-    "ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfMetallic",
+    "ShaderNodeBsdfDiffuse",
+    "ShaderNodeBsdfTranslucent",
+    "ShaderNodeSubsurfaceScattering",
+    "ShaderNodeBsdfToon",
+    "ShaderNodeBsdfVelvet",
+    "ShaderNodeBsdfSheen",
+    "ShaderNodeBsdfHair",
+    "ShaderNodeBsdfGlossy",
+    "ShaderNodeBsdfAnisotropic",
+    "ShaderNodeBsdfMetallic",
 }
 _CLEAR = {"ShaderNodeBsdfGlass", "ShaderNodeBsdfRefraction", "ShaderNodeBsdfTransparent"}
 
@@ -92,15 +99,21 @@ class ClosureReader:
         a, b = self.read(node.inputs[1]), self.read(node.inputs[2])
         mix = self.expression.mix
         return Surface(
-            mix(factor, a.albedo, b.albedo), mix(factor, a.emission, b.emission),
-            mix(factor, a.transmittance, b.transmittance), a.normal or b.normal)
+            mix(factor, a.albedo, b.albedo),
+            mix(factor, a.emission, b.emission),
+            mix(factor, a.transmittance, b.transmittance),
+            a.normal or b.normal,
+        )
 
     def _add(self, node):
         a, b = self.read(node.inputs[0]), self.read(node.inputs[1])
         add = self.expression.add
         return Surface(
-            add(a.albedo, b.albedo), add(a.emission, b.emission),
-            add(a.transmittance, b.transmittance), a.normal or b.normal)
+            add(a.albedo, b.albedo),
+            add(a.emission, b.emission),
+            add(a.transmittance, b.transmittance),
+            a.normal or b.normal,
+        )
 
     def _specular(self, f0, roughness):
         """GGX albedo with the energy of multiple scattering put back."""
@@ -115,9 +128,12 @@ class ClosureReader:
         math = self.expression
         clear = self.value(node, "Transparency")
         opaque = math.one_minus(clear)
-        return Surface(math.multiply(self.value(node, "Base Color"), opaque),
-                       math.multiply(self.value(node, "Emissive Color", default=ZERO), opaque),
-                       clear, _normal(node))
+        return Surface(
+            math.multiply(self.value(node, "Base Color"), opaque),
+            math.multiply(self.value(node, "Emissive Color", default=ZERO), opaque),
+            clear,
+            _normal(node),
+        )
 
     def _base_color(self, node):
         """Base colour; before Blender 4 subsurface mixed a colour of its own into it."""
@@ -147,7 +163,9 @@ class ClosureReader:
         strength = self.value(node, "Emission Strength", default=1.0)
         emission = math.multiply(self.value(node, "Emission Color", "Emission", default=ZERO), strength)
         alpha = self.value(node, "Alpha", default=1.0)
-        clear = math.multiply(self.value(node, "Transmission Weight", "Transmission"), math.one_minus(metallic))
+        clear = math.multiply(
+            self.value(node, "Transmission Weight", "Transmission"), math.one_minus(metallic)
+        )
         albedo = math.multiply(albedo, math.one_minus(clear))
         through = math.add(math.multiply(math.multiply(base, clear), alpha), math.one_minus(alpha))
         return Surface(math.multiply(albedo, alpha), math.multiply(emission, alpha), through, _normal(node))

@@ -72,7 +72,11 @@ class KeptLayout:
 
 
 def _placement(obj):
-    return {"page": obj.ajar.lightmap_page, "scale": tuple(obj.ajar.uv_scale), "offset": tuple(obj.ajar.uv_offset)}
+    return {
+        "page": obj.ajar.lightmap_page,
+        "scale": tuple(obj.ajar.uv_scale),
+        "offset": tuple(obj.ajar.uv_offset),
+    }
 
 
 def read_uv_layer(mesh):

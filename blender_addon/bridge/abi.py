@@ -34,52 +34,122 @@ floats, uints, bytes_ = c.POINTER(f32), c.POINTER(u32), c.POINTER(c.c_uint8)
 
 
 class TextureDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("width", u32), ("height", u32),
-                ("texel", u32), ("color", u32), ("extend", u32), ("nearest", u32),
-                ("texels", c.c_void_p), ("texel_bytes", u64)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("width", u32),
+        ("height", u32),
+        ("texel", u32),
+        ("color", u32),
+        ("extend", u32),
+        ("nearest", u32),
+        ("texels", c.c_void_p),
+        ("texel_bytes", u64),
+    ]
 
 
 class Input(c.Structure):
-    _fields_ = [("value", f32 * 3), ("texture", u32), ("uv_layer", u32), ("color_layer", u32),
-                ("channel", u32), ("invert", u32), ("uv_transform", f32 * 6)]
+    _fields_ = [
+        ("value", f32 * 3),
+        ("texture", u32),
+        ("uv_layer", u32),
+        ("color_layer", u32),
+        ("channel", u32),
+        ("invert", u32),
+        ("uv_transform", f32 * 6),
+    ]
 
 
 class Closure(c.Structure):
-    _fields_ = [("type", u32), ("weight_a", Input), ("weight_b", Input), ("color", Input),
-                ("strength", Input), ("metallic", Input), ("roughness", Input), ("specular", f32)]
+    _fields_ = [
+        ("type", u32),
+        ("weight_a", Input),
+        ("weight_b", Input),
+        ("color", Input),
+        ("strength", Input),
+        ("metallic", Input),
+        ("roughness", Input),
+        ("specular", f32),
+    ]
 
 
 class MaterialDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("closure_count", u32),
-                ("closures", c.POINTER(Closure)), ("one_sided", u32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("closure_count", u32),
+        ("closures", c.POINTER(Closure)),
+        ("one_sided", u32),
+    ]
 
 
 class MeshDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("vertex_count", u32),
-                ("triangle_count", u32), ("positions", floats), ("corner_vertex", uints),
-                ("corner_normals", floats), ("triangle_slot", uints), ("uv_layer_count", u32),
-                ("uv_layers", c.POINTER(floats)), ("color_layer_count", u32),
-                ("color_layers", c.POINTER(floats))]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("vertex_count", u32),
+        ("triangle_count", u32),
+        ("positions", floats),
+        ("corner_vertex", uints),
+        ("corner_normals", floats),
+        ("triangle_slot", uints),
+        ("uv_layer_count", u32),
+        ("uv_layers", c.POINTER(floats)),
+        ("color_layer_count", u32),
+        ("color_layers", c.POINTER(floats)),
+    ]
 
 
 class ElementDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("kind", u32), ("weight", f32),
-                ("combine", u32), ("bounce", u32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("kind", u32),
+        ("weight", f32),
+        ("combine", u32),
+        ("bounce", u32),
+    ]
 
 
 class InstanceDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("mesh", u32), ("transform", f64 * 12),
-                ("material_count", u32), ("materials", uints), ("surface", u32),
-                ("visibility", u32), ("lightmap_layer", u32), ("page", u32),
-                ("uv_scale", f32 * 2), ("uv_offset", f32 * 2), ("element", u32), ("open_pose", u32),
-                ("light_set", u32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("mesh", u32),
+        ("transform", f64 * 12),
+        ("material_count", u32),
+        ("materials", uints),
+        ("surface", u32),
+        ("visibility", u32),
+        ("lightmap_layer", u32),
+        ("page", u32),
+        ("uv_scale", f32 * 2),
+        ("uv_offset", f32 * 2),
+        ("element", u32),
+        ("open_pose", u32),
+        ("light_set", u32),
+    ]
 
 
 class LightDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("type", u32), ("role", u32),
-                ("transform", f64 * 12), ("color", f32 * 3), ("energy", f32), ("radius", f32),
-                ("spot_angle", f32), ("spot_blend", f32), ("sun_angle", f32), ("size_x", f32),
-                ("size_y", f32), ("spread", f32), ("casts_shadow", u32), ("light_set", u32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("type", u32),
+        ("role", u32),
+        ("transform", f64 * 12),
+        ("color", f32 * 3),
+        ("energy", f32),
+        ("radius", f32),
+        ("spot_angle", f32),
+        ("spot_blend", f32),
+        ("sun_angle", f32),
+        ("size_x", f32),
+        ("size_y", f32),
+        ("spread", f32),
+        ("casts_shadow", u32),
+        ("light_set", u32),
+    ]
 
 
 class SkyDesc(c.Structure):
@@ -87,45 +157,94 @@ class SkyDesc(c.Structure):
 
 
 class Settings(c.Structure):
-    _fields_ = [("struct_size", u32), ("bounces", u32), ("noise_target", f32), ("time_limit", f32),
-                ("samples", u32), ("bounce_samples", u32), ("direct_samples", u32),
-                ("positions_per_texel", u32), ("seed", u32), ("threads", u32),
-                ("stitch_seams", u32), ("keep_sh", u32), ("keep_bounces", u32),
-                ("combinations", u32), ("term_threshold", f32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("bounces", u32),
+        ("noise_target", f32),
+        ("time_limit", f32),
+        ("samples", u32),
+        ("bounce_samples", u32),
+        ("direct_samples", u32),
+        ("positions_per_texel", u32),
+        ("seed", u32),
+        ("threads", u32),
+        ("stitch_seams", u32),
+        ("keep_sh", u32),
+        ("keep_bounces", u32),
+        ("combinations", u32),
+        ("term_threshold", f32),
+    ]
 
 
 class TermInfo(c.Structure):
-    _fields_ = [("struct_size", u32), ("element_count", u32), ("elements", u32 * MAX_TERM_ELEMENTS),
-                ("is_signed", u32), ("texel_count", u64), ("relative_error", f32),
-                ("discarded", f32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("element_count", u32),
+        ("elements", u32 * MAX_TERM_ELEMENTS),
+        ("is_signed", u32),
+        ("texel_count", u64),
+        ("relative_error", f32),
+        ("discarded", f32),
+    ]
 
 
 class Progress(c.Structure):
-    _fields_ = [("struct_size", u32), ("stage", u32), ("fraction", f32), ("elapsed", f32),
-                ("remaining", f32), ("result", Result), ("rays", u64)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("stage", u32),
+        ("fraction", f32),
+        ("elapsed", f32),
+        ("remaining", f32),
+        ("result", Result),
+        ("rays", u64),
+    ]
 
 
 class LayoutSettings(c.Structure):
-    _fields_ = [("struct_size", u32), ("texels_per_meter", f32), ("atlas_size", u32),
-                ("padding", u32), ("chart_angle", f32)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("texels_per_meter", f32),
+        ("atlas_size", u32),
+        ("padding", u32),
+        ("chart_angle", f32),
+    ]
 
 
 class LayoutMeshDesc(c.Structure):
-    _fields_ = [("struct_size", u32), ("name", c.c_char_p), ("vertex_count", u32),
-                ("corner_count", u32), ("polygon_count", u32), ("positions", floats),
-                ("corner_vertex", uints), ("polygon_start", uints), ("polygon_size", uints),
-                ("corner_edge_sharp", bytes_), ("corner_uv", floats), ("user_count", u32),
-                ("user_transforms", c.POINTER(f64)), ("user_texel_scale", floats)]
+    _fields_ = [
+        ("struct_size", u32),
+        ("name", c.c_char_p),
+        ("vertex_count", u32),
+        ("corner_count", u32),
+        ("polygon_count", u32),
+        ("positions", floats),
+        ("corner_vertex", uints),
+        ("polygon_start", uints),
+        ("polygon_size", uints),
+        ("corner_edge_sharp", bytes_),
+        ("corner_uv", floats),
+        ("user_count", u32),
+        ("user_transforms", c.POINTER(f64)),
+        ("user_texel_scale", floats),
+    ]
 
 
 # struct name in the header -> mirror; used by the tests as well.
 STRUCTS = {
-    "ajar_texture_desc": TextureDesc, "ajar_input": Input, "ajar_closure": Closure,
-    "ajar_material_desc": MaterialDesc, "ajar_mesh_desc": MeshDesc,
-    "ajar_element_desc": ElementDesc, "ajar_term_info": TermInfo,
-    "ajar_instance_desc": InstanceDesc, "ajar_light_desc": LightDesc, "ajar_sky_desc": SkyDesc,
-    "ajar_settings": Settings, "ajar_progress": Progress,
-    "ajar_layout_settings": LayoutSettings, "ajar_layout_mesh_desc": LayoutMeshDesc,
+    "ajar_texture_desc": TextureDesc,
+    "ajar_input": Input,
+    "ajar_closure": Closure,
+    "ajar_material_desc": MaterialDesc,
+    "ajar_mesh_desc": MeshDesc,
+    "ajar_element_desc": ElementDesc,
+    "ajar_term_info": TermInfo,
+    "ajar_instance_desc": InstanceDesc,
+    "ajar_light_desc": LightDesc,
+    "ajar_sky_desc": SkyDesc,
+    "ajar_settings": Settings,
+    "ajar_progress": Progress,
+    "ajar_layout_settings": LayoutSettings,
+    "ajar_layout_mesh_desc": LayoutMeshDesc,
 }
 
 P = c.POINTER

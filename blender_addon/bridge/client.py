@@ -33,8 +33,13 @@ class WorkerClient:
         self._lines, self._errors = queue.SimpleQueue(), []
         self._asked = False
         self._process = subprocess.Popen(
-            command + [str(a) for a in arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, env=clean_environment(environment), **_process_options())
+            command + [str(a) for a in arguments],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=clean_environment(environment),
+            **_process_options(),
+        )
         self._threads = [_start(self._read_events), _start(self._read_errors)]
 
     @classmethod
@@ -134,8 +139,13 @@ class WorkerClient:
         code = self._process.returncode
         if self._asked:
             return {"event": "cancelled"}
-        return {"event": "error", "code": abi.ERROR_INTERNAL, "culprit": "",
-                "message": describe_exit(code), "detail": "\n".join(self._errors)}
+        return {
+            "event": "error",
+            "code": abi.ERROR_INTERNAL,
+            "culprit": "",
+            "message": describe_exit(code),
+            "detail": "\n".join(self._errors),
+        }
 
 
 def parse_event(line):

@@ -59,12 +59,21 @@ def _add_mesh(library, layout, reader, mesh):
 
 def _write_result(library, layout, directory, meshes, warnings):
     with Writer(directory, "layout_result") as writer:
-        answer = [{"name": mesh["name"],
-                   "corner_uv": _mesh_uv(library, layout, index, mesh["corner_vertex"]["count"], writer),
-                   "users": [_user(library, layout, index, user) for user in range(len(mesh["users"]))]}
-                  for index, mesh in enumerate(meshes)]
-        writer.finish({"pages": _pages(library, layout), "meshes": answer,
-                       "warnings": [{"culprit": who, "text": text} for who, text in warnings]})
+        answer = [
+            {
+                "name": mesh["name"],
+                "corner_uv": _mesh_uv(library, layout, index, mesh["corner_vertex"]["count"], writer),
+                "users": [_user(library, layout, index, user) for user in range(len(mesh["users"]))],
+            }
+            for index, mesh in enumerate(meshes)
+        ]
+        writer.finish(
+            {
+                "pages": _pages(library, layout),
+                "meshes": answer,
+                "warnings": [{"culprit": who, "text": text} for who, text in warnings],
+            }
+        )
 
 
 def _pages(library, layout):
@@ -86,6 +95,12 @@ def _mesh_uv(library, layout, mesh, corners, writer):
 def _user(library, layout, mesh, user):
     page, density = c.c_uint32(), c.c_float()
     scale, offset = (c.c_float * 2)(), (c.c_float * 2)()
-    check(library, library.ajar_layout_user(layout, mesh, user, c.byref(page), scale, offset, c.byref(density)))
-    return {"page": page.value, "scale": list(scale), "offset": list(offset),
-            "texels_per_meter": density.value}
+    check(
+        library, library.ajar_layout_user(layout, mesh, user, c.byref(page), scale, offset, c.byref(density))
+    )
+    return {
+        "page": page.value,
+        "scale": list(scale),
+        "offset": list(offset),
+        "texels_per_meter": density.value,
+    }

@@ -30,8 +30,9 @@ def library_path():
     given = os.environ.get("AJAR_LIBRARY")
     addon = Path(__file__).resolve().parent.parent
     name = library_file_name()
-    places = [Path(given)] if given else [addon / "lib" / name,
-                                          addon.parent / "build" / "release" / "lib" / name]
+    places = (
+        [Path(given)] if given else [addon / "lib" / name, addon.parent / "build" / "release" / "lib" / name]
+    )
     for place in places:
         if place.is_file():
             return place
@@ -54,7 +55,9 @@ def load_library(path=None):
         function.restype, function.argtypes = result, arguments
     version = library.ajar_abi_version()
     if version != abi.ABI_VERSION:
-        raise BakeError(abi.ERROR_IO, f"engine has ABI {version}, the add-on needs {abi.ABI_VERSION}", str(path))
+        raise BakeError(
+            abi.ERROR_IO, f"engine has ABI {version}, the add-on needs {abi.ABI_VERSION}", str(path)
+        )
     return library
 
 
@@ -78,7 +81,9 @@ def read_warnings(library, handle, kind):
     text, culprit = ctypes.create_string_buffer(1024), ctypes.create_string_buffer(512)
     found = []
     for index in range(count.value):
-        check(library, getattr(library, f"ajar_{kind}_warning")(
-            handle, index, text, len(text), culprit, len(culprit)))
+        check(
+            library,
+            getattr(library, f"ajar_{kind}_warning")(handle, index, text, len(text), culprit, len(culprit)),
+        )
         found.append((decode(culprit.value), decode(text.value)))
     return found

@@ -94,8 +94,7 @@ class Writer:
         """Appends a bytes-like object of scalars of kind; returns its array reference."""
         view = memoryview(data).cast("B")
         self._pad()
-        reference = {"offset": self._offset, "type": kind,
-                     "count": len(view) // ctypes.sizeof(_TYPES[kind])}
+        reference = {"offset": self._offset, "type": kind, "count": len(view) // ctypes.sizeof(_TYPES[kind])}
         self._file.write(view)
         self._offset += len(view)
         return reference
@@ -109,8 +108,9 @@ class Writer:
         """Closes the arrays and writes data (a dict, version added) as JSON."""
         self._file.write(bytes(ALIGNMENT))  # never empty: an empty file cannot be mapped
         self._file.close()
-        write_text_whole(self.directory / f"{self.name}.json",
-                         json.dumps({"version": VERSION, **data}, ensure_ascii=False))
+        write_text_whole(
+            self.directory / f"{self.name}.json", json.dumps({"version": VERSION, **data}, ensure_ascii=False)
+        )
 
     def abandon(self):
         """Closes and removes what was written."""

@@ -150,9 +150,14 @@ def wait(library, host, job):
         result = library.ajar_job_wait(job, POLL_SECONDS)
         library.ajar_progress_init(ctypes.byref(progress))
         check(library, library.ajar_job_poll(job, ctypes.byref(progress)))
-        host.send("progress", stage=decode(library.ajar_stage_name(progress.stage)),
-                  fraction=round(progress.fraction, 5), elapsed=round(progress.elapsed, 3),
-                  remaining=round(progress.remaining, 1), rays=progress.rays)
+        host.send(
+            "progress",
+            stage=decode(library.ajar_stage_name(progress.stage)),
+            fraction=round(progress.fraction, 5),
+            elapsed=round(progress.elapsed, 3),
+            remaining=round(progress.remaining, 1),
+            rays=progress.rays,
+        )
         if result != abi.RUNNING:
             return result
         if host.cancel.is_set() and not asked:

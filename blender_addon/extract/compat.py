@@ -5,7 +5,10 @@ import bpy
 
 from .. import fields
 
-_DEFAULTS = {f.name: f.default for f in fields.SCENE_FIELDS + fields.OBJECT_FIELDS + fields.COLLECTION_FIELDS + fields.WORLD_FIELDS}
+_DEFAULTS = {
+    f.name: f.default
+    for f in fields.SCENE_FIELDS + fields.OBJECT_FIELDS + fields.COLLECTION_FIELDS + fields.WORLD_FIELDS
+}
 
 # Columns map a working space of Blender 5 to Rec.709.
 _TO_REC709 = {

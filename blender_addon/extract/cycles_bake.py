@@ -37,8 +37,11 @@ class SocketBaker:
                 self._cache[key] = self._bake(key, path)
                 self.warnings.add(self.material.name, f"{reason}: baked to a texture by Cycles")
         except (RuntimeError, TypeError, ValueError) as error:
-            self.warnings.add(self.material.name, f"{reason} on object '{self.owner.name}' could not be "
-                              f"baked to a texture ({error}): the socket's own value is used")
+            self.warnings.add(
+                self.material.name,
+                f"{reason} on object '{self.owner.name}' could not be "
+                f"baked to a texture ({error}): the socket's own value is used",
+            )
             value = socket.default_value
             return constant(tuple(value)[:3] if hasattr(value, "__len__") else value)
         return Field(texture=key, sampler=self._cache[key], channel="r" if scalar else "rgb")
@@ -87,8 +90,12 @@ def bake_socket(owner, material, path, uv, size, split):
     """
     with ExitStack() as stack:
         scene = stack.enter_context(_temporary(bpy.data.scenes, bpy.data.scenes.new("AjarBake")))
-        image = stack.enter_context(_temporary(bpy.data.images, bpy.data.images.new(
-            "AjarBake", *size, alpha=False, float_buffer=True, is_data=True)))
+        image = stack.enter_context(
+            _temporary(
+                bpy.data.images,
+                bpy.data.images.new("AjarBake", *size, alpha=False, float_buffer=True, is_data=True),
+            )
+        )
         copies = []
         stack.callback(_remove_trees, copies)
         probe = stack.enter_context(_temporary(bpy.data.materials, material.copy()))
@@ -211,9 +218,21 @@ def _run(scene, target):
     view_layer = scene.view_layers[0]
     target.select_set(True, view_layer=view_layer)
     view_layer.objects.active = target
-    with bpy.context.temp_override(scene=scene, view_layer=view_layer, active_object=target, object=target,
-                                   selected_objects=[target], selected_editable_objects=[target]):
-        result = bpy.ops.object.bake(type="EMIT", margin=8, use_clear=True, target="IMAGE_TEXTURES",
-                                     use_selected_to_active=False, save_mode="INTERNAL")
+    with bpy.context.temp_override(
+        scene=scene,
+        view_layer=view_layer,
+        active_object=target,
+        object=target,
+        selected_objects=[target],
+        selected_editable_objects=[target],
+    ):
+        result = bpy.ops.object.bake(
+            type="EMIT",
+            margin=8,
+            use_clear=True,
+            target="IMAGE_TEXTURES",
+            use_selected_to_active=False,
+            save_mode="INTERNAL",
+        )
     if result != {"FINISHED"}:
         raise RuntimeError("Cycles did not finish")

@@ -64,8 +64,12 @@ class Evaluator:
             return as_scalar(self.store, field)
         if origin == "VECTOR" and target in {"VALUE", "INT", "BOOLEAN"}:
             return apply(self.store, "average", lambda x: x.mean(axis=1, keepdims=True), field)
-        if origin in {"VALUE", "INT", "BOOLEAN"} and target in {"RGBA", "VECTOR"} and field.channel == "rgb" \
-                and not field.is_constant:
+        if (
+            origin in {"VALUE", "INT", "BOOLEAN"}
+            and target in {"RGBA", "VECTOR"}
+            and field.channel == "rgb"
+            and not field.is_constant
+        ):
             return apply(self.store, "channel", lambda x: x[:, :1], field)
         return field
 
@@ -111,8 +115,11 @@ class Evaluator:
             return node.uv_map or None, IDENTITY
         if node.bl_idname == "ShaderNodeTexCoord" and source.socket.name == "UV" and not node.from_instancer:
             return None, IDENTITY
-        if node.bl_idname == "ShaderNodeAttribute" and node.attribute_type == "GEOMETRY" \
-                and source.socket.name in {"Vector", "Color"}:
+        if (
+            node.bl_idname == "ShaderNodeAttribute"
+            and node.attribute_type == "GEOMETRY"
+            and source.socket.name in {"Vector", "Color"}
+        ):
             return node.attribute_name, IDENTITY
         if node.bl_idname in {"ShaderNodeMapping", "ShaderNodeVectorMath"}:
             uv, inner = self.mapping(source.scope, node.inputs[0])
@@ -138,5 +145,4 @@ def compose(outer, inner):
     """2x3 affine outer after inner."""
     a, b, c, d, e, f = outer
     g, h, i, j, k, l = inner
-    return (a * g + b * j, a * h + b * k, a * i + b * l + c,
-            d * g + e * j, d * h + e * k, d * i + e * l + f)
+    return (a * g + b * j, a * h + b * k, a * i + b * l + c, d * g + e * j, d * h + e * k, d * i + e * l + f)

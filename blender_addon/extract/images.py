@@ -129,7 +129,9 @@ def downscale(texels, max_size):
         small[..., :3] /= np.where(small[..., 3:] > 0.0, small[..., 3:], 1.0)
     if texels.data.dtype != np.uint8:
         return Texels(texels.name, small)
-    coded = np.concatenate([linear_to_srgb(small[..., :3]) if texels.srgb else small[..., :3], small[..., 3:]], axis=2)
+    coded = np.concatenate(
+        [linear_to_srgb(small[..., :3]) if texels.srgb else small[..., :3], small[..., 3:]], axis=2
+    )
     return Texels(texels.name, np.clip(np.rint(coded * 255.0), 0, 255).astype(np.uint8), texels.srgb)
 
 
@@ -218,6 +220,13 @@ class TextureStore:
         if key not in self._references:
             self._references[key] = self._writer.add(texels.data, kind)
         height, width = texels.data.shape[:2]
-        return {"name": texels.name, "width": width, "height": height, "texel": kind,
-                "color": "srgb" if texels.srgb else "linear", "extend": sampler.extend,
-                "nearest": sampler.nearest, "texels": self._references[key]}
+        return {
+            "name": texels.name,
+            "width": width,
+            "height": height,
+            "texel": kind,
+            "color": "srgb" if texels.srgb else "linear",
+            "extend": sampler.extend,
+            "nearest": sampler.nearest,
+            "texels": self._references[key],
+        }

@@ -69,12 +69,18 @@ def read_mesh(mesh, name):
     positions = _get(mesh.vertices, "co", (len(mesh.vertices), 3), np.float32)
     corner_vertex = loop_vertex[loops]
     return MeshData(
-        name, positions, corner_vertex.astype(np.uint32),
+        name,
+        positions,
+        corner_vertex.astype(np.uint32),
         _corner_normals(mesh, loops, positions[corner_vertex]),
         _get(mesh.loop_triangles, "material_index", (count,), np.int32).astype(np.uint32),
-        _uv_layers(mesh, loops), _color_layers(mesh, loops, corner_vertex),
-        _active_uv(mesh), _active_color(mesh),
-        [m.original if m is not None else None for m in mesh.materials], loops)
+        _uv_layers(mesh, loops),
+        _color_layers(mesh, loops, corner_vertex),
+        _active_uv(mesh),
+        _active_color(mesh),
+        [m.original if m is not None else None for m in mesh.materials],
+        loops,
+    )
 
 
 def _get(collection, name, shape, kind):
@@ -119,8 +125,11 @@ def _loop_normals(mesh):
 
 def _uv_layers(mesh, loops):
     shape = (len(mesh.loops), 2)
-    return {layer.name: _get(layer.data, "uv", shape, np.float32)[loops]
-            for layer in mesh.uv_layers if len(layer.data) == len(mesh.loops)}
+    return {
+        layer.name: _get(layer.data, "uv", shape, np.float32)[loops]
+        for layer in mesh.uv_layers
+        if len(layer.data) == len(mesh.loops)
+    }
 
 
 def _active_uv(mesh):
@@ -148,7 +157,9 @@ def _active_color(mesh):
 def write_mesh(writer, data):
     """The snapshot's dict of a mesh; its arrays go to the writer."""
     return {
-        "name": data.name, "vertex_count": len(data.positions), "triangle_count": len(data.corner_vertex),
+        "name": data.name,
+        "vertex_count": len(data.positions),
+        "triangle_count": len(data.corner_vertex),
         "positions": writer.add(data.positions, "f32"),
         "corner_vertex": writer.add(data.corner_vertex, "u32"),
         "corner_normals": writer.add(data.corner_normals, "f32"),
@@ -208,4 +219,4 @@ def _cover(grid, triangle):
         (ax, ay), (bx, by) = triangle[a], triangle[b]
         edges.append((bx - ax) * (y - ay) - (by - ay) * (x - ax))
     inside = (np.minimum.reduce(edges) > 1e-6) | (np.maximum.reduce(edges) < -1e-6)
-    grid[low[1]:high[1], low[0]:high[0]] += inside
+    grid[low[1] : high[1], low[0] : high[0]] += inside

@@ -39,19 +39,30 @@ def _invert(ev, scope, node, socket):
 
 
 def _gamma(ev, scope, node, socket):
-    return apply(ev.store, "gamma", lambda c, g: np.where(c > 0.0, np.maximum(c, 0.0) ** g, c),
-                 ev.color(scope, node, "Color"), ev.scalar(scope, node, "Gamma"))
+    return apply(
+        ev.store,
+        "gamma",
+        lambda c, g: np.where(c > 0.0, np.maximum(c, 0.0) ** g, c),
+        ev.color(scope, node, "Color"),
+        ev.scalar(scope, node, "Gamma"),
+    )
 
 
 def _bright_contrast(ev, scope, node, socket):
-    return apply(ev.store, "bright contrast",
-                 lambda c, b, k: np.maximum((1.0 + k) * c + b - k * 0.5, 0.0),
-                 ev.color(scope, node, "Color"), ev.scalar(scope, node, "Bright"), ev.scalar(scope, node, "Contrast"))
+    return apply(
+        ev.store,
+        "bright contrast",
+        lambda c, b, k: np.maximum((1.0 + k) * c + b - k * 0.5, 0.0),
+        ev.color(scope, node, "Color"),
+        ev.scalar(scope, node, "Bright"),
+        ev.scalar(scope, node, "Contrast"),
+    )
 
 
 def _hue_saturation(ev, scope, node, socket):
-    inputs = [ev.scalar(scope, node, *names) for names in
-              (("Hue",), ("Saturation",), ("Value",), ("Fac", "Factor"))]
+    inputs = [
+        ev.scalar(scope, node, *names) for names in (("Hue",), ("Saturation",), ("Value",), ("Fac", "Factor"))
+    ]
 
     def shift(color, hue, saturation, value, factor):
         h, s, v = np.moveaxis(rgb_to_hsv(color), -1, 0)
@@ -59,6 +70,7 @@ def _hue_saturation(ev, scope, node, socket):
         s = np.clip(s * saturation[:, 0], 0.0, 1.0)
         result = np.maximum(hsv_to_rgb(np.stack(np.broadcast_arrays(h, s, v * value[:, 0]), -1)), 0.0)
         return factor * result + (1.0 - factor) * color
+
     return apply(ev.store, "hue saturation", shift, ev.color(scope, node, "Color"), *inputs)
 
 
@@ -103,6 +115,7 @@ def _combine(ev, scope, node, socket):
     def join(*columns):
         rgb = np.concatenate(np.broadcast_arrays(*(c[:, :1] for c in columns)), axis=1)
         return hsv_to_rgb(rgb) if mode == "HSV" else rgb
+
     return apply(ev.store, ("combine", mode), join, *parts)
 
 
@@ -116,6 +129,7 @@ def _table(function):
 
     def look_up(x, channel):
         return np.interp(np.clip(x, 0.0, 1.0), np.linspace(0.0, 1.0, _TABLE_SIZE), samples[:, channel])
+
     return samples, look_up
 
 
@@ -132,13 +146,21 @@ def _curves(ev, scope, node, socket):
     mapping = node.mapping
     mapping.initialize()
     curves = mapping.curves
-    samples, look_up = _table(lambda x: [mapping.evaluate(curves[c], mapping.evaluate(curves[3], x)) for c in range(3)])
+    samples, look_up = _table(
+        lambda x: [mapping.evaluate(curves[c], mapping.evaluate(curves[3], x)) for c in range(3)]
+    )
 
     def bend(factor, color):
         bent = np.stack([look_up(color[:, c], c) for c in range(3)], 1)
         return factor * bent + (1.0 - factor) * color
-    return apply(ev.store, ("curves", samples.tobytes()), bend, ev.scalar(scope, node, "Fac", "Factor"),
-                 ev.color(scope, node, "Color"))
+
+    return apply(
+        ev.store,
+        ("curves", samples.tobytes()),
+        bend,
+        ev.scalar(scope, node, "Fac", "Factor"),
+        ev.color(scope, node, "Color"),
+    )
 
 
 def _blackbody(ev, scope, node, socket):
@@ -150,23 +172,38 @@ def blackbody(kelvin):
     (analytic fit of Wyman, Sloan and Shirley, JCGT 2013)."""
     nm = np.arange(380.0, 781.0, 5.0)
     t = max(float(kelvin), 800.0)
-    power = nm ** -5.0 / np.expm1(np.minimum(1.438777e7 / (nm * t), 700.0))
+    power = nm**-5.0 / np.expm1(np.minimum(1.438777e7 / (nm * t), 700.0))
 
     def lobe(mean, left, right):
         return np.exp(-0.5 * ((nm - mean) * np.where(nm < mean, left, right)) ** 2)
-    x = 0.362 * lobe(442.0, 0.0624, 0.0374) + 1.056 * lobe(599.8, 0.0264, 0.0323) - 0.065 * lobe(501.1, 0.0490, 0.0382)
+
+    x = (
+        0.362 * lobe(442.0, 0.0624, 0.0374)
+        + 1.056 * lobe(599.8, 0.0264, 0.0323)
+        - 0.065 * lobe(501.1, 0.0490, 0.0382)
+    )
     y = 0.821 * lobe(568.8, 0.0213, 0.0247) + 0.286 * lobe(530.9, 0.0613, 0.0322)
     z = 1.217 * lobe(437.0, 0.0845, 0.0278) + 0.681 * lobe(459.0, 0.0385, 0.0725)
     xyz = np.array([(power * bar).sum() for bar in (x, y, z)])
-    rgb = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
-                    [0.0556434, -0.2040259, 1.0572252]]) @ (xyz / xyz[1])
+    rgb = np.array(
+        [
+            [3.2404542, -1.5371385, -0.4985314],
+            [-0.9692660, 1.8760108, 0.0415560],
+            [0.0556434, -0.2040259, 1.0572252],
+        ]
+    ) @ (xyz / xyz[1])
     return tuple(np.maximum(rgb, 0.0))
 
 
 _BLENDS = {
-    "MIX": lambda a, b: b, "ADD": lambda a, b: a + b, "MULTIPLY": lambda a, b: a * b,
-    "SUBTRACT": lambda a, b: a - b, "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
-    "DIFFERENCE": lambda a, b: np.abs(a - b), "DARKEN": np.minimum, "LIGHTEN": np.maximum,
+    "MIX": lambda a, b: b,
+    "ADD": lambda a, b: a + b,
+    "MULTIPLY": lambda a, b: a * b,
+    "SUBTRACT": lambda a, b: a - b,
+    "SCREEN": lambda a, b: 1.0 - (1.0 - a) * (1.0 - b),
+    "DIFFERENCE": lambda a, b: np.abs(a - b),
+    "DARKEN": np.minimum,
+    "LIGHTEN": np.maximum,
     "DIVIDE": lambda a, b: np.where(b != 0.0, a / np.where(b != 0.0, b, 1.0), a),
     "EXCLUSION": lambda a, b: np.maximum(a + b - 2.0 * a * b, 0.0),
     "OVERLAY": lambda a, b: np.where(a < 0.5, 2.0 * a * b, 1.0 - 2.0 * (1.0 - a) * (1.0 - b)),
@@ -185,8 +222,10 @@ def _mix(ev, scope, node, socket):
     if kind is None:
         raise Inexact(f"mix of {node.data_type.lower()}")
     vector = kind == "Vector" and node.factor_mode == "NON_UNIFORM"
-    sockets = [by_identifier(node.inputs, name) for name in
-               ("Factor_Vector" if vector else "Factor_Float", f"A_{kind}", f"B_{kind}")]
+    sockets = [
+        by_identifier(node.inputs, name)
+        for name in ("Factor_Vector" if vector else "Factor_Float", f"A_{kind}", f"B_{kind}")
+    ]
     factor, a, b = (ev.socket(scope, s) for s in sockets)
     blend = node.blend_type if kind == "Color" else "MIX"
     return _blend(ev, blend, factor, a, b, node.clamp_factor, kind == "Color" and node.clamp_result)
@@ -218,11 +257,19 @@ def _blend(ev, blend, factor, a, b, clamp_factor, clamp_result):
         t = np.clip(t, 0.0, 1.0) if clamp_factor else t
         result = x + t * (_BLENDS[blend](x, y) - x)
         return np.clip(result, 0.0, 1.0) if clamp_result else result
+
     return apply(ev.store, ("mix", blend, clamp_factor, clamp_result), function, factor, a, b)
 
 
-_CAMERA = {"Is Camera Ray": 0.0, "Is Shadow Ray": 0.0, "Is Diffuse Ray": 1.0, "Is Glossy Ray": 0.0,
-           "Is Singular Ray": 0.0, "Is Reflection Ray": 1.0, "Is Transmission Ray": 0.0}
+_CAMERA = {
+    "Is Camera Ray": 0.0,
+    "Is Shadow Ray": 0.0,
+    "Is Diffuse Ray": 1.0,
+    "Is Glossy Ray": 0.0,
+    "Is Singular Ray": 0.0,
+    "Is Reflection Ray": 1.0,
+    "Is Transmission Ray": 0.0,
+}
 
 
 def _light_path(ev, scope, node, socket):
@@ -257,15 +304,28 @@ def _occlusion(ev, scope, node, socket):
 
 
 NODES = {
-    "ShaderNodeRGB": _rgb, "ShaderNodeValue": _value,
-    "ShaderNodeVertexColor": _vertex_color, "ShaderNodeAttribute": _attribute,
-    "ShaderNodeInvert": _invert, "ShaderNodeGamma": _gamma,
-    "ShaderNodeBrightContrast": _bright_contrast, "ShaderNodeHueSaturation": _hue_saturation,
-    "ShaderNodeSeparateRGB": _separate, "ShaderNodeSeparateColor": _separate,
-    "ShaderNodeSeparateXYZ": _separate, "ShaderNodeCombineXYZ": _combine,
-    "ShaderNodeCombineRGB": _combine, "ShaderNodeCombineColor": _combine,
-    "ShaderNodeRGBToBW": _to_bw, "ShaderNodeValToRGB": _ramp, "ShaderNodeRGBCurve": _curves,
-    "ShaderNodeBlackbody": _blackbody, "ShaderNodeMixRGB": _mix_rgb, "ShaderNodeMix": _mix,
-    "ShaderNodeLightPath": _light_path, "ShaderNodeFresnel": _fresnel,
-    "ShaderNodeLayerWeight": _layer_weight, "ShaderNodeAmbientOcclusion": _occlusion,
+    "ShaderNodeRGB": _rgb,
+    "ShaderNodeValue": _value,
+    "ShaderNodeVertexColor": _vertex_color,
+    "ShaderNodeAttribute": _attribute,
+    "ShaderNodeInvert": _invert,
+    "ShaderNodeGamma": _gamma,
+    "ShaderNodeBrightContrast": _bright_contrast,
+    "ShaderNodeHueSaturation": _hue_saturation,
+    "ShaderNodeSeparateRGB": _separate,
+    "ShaderNodeSeparateColor": _separate,
+    "ShaderNodeSeparateXYZ": _separate,
+    "ShaderNodeCombineXYZ": _combine,
+    "ShaderNodeCombineRGB": _combine,
+    "ShaderNodeCombineColor": _combine,
+    "ShaderNodeRGBToBW": _to_bw,
+    "ShaderNodeValToRGB": _ramp,
+    "ShaderNodeRGBCurve": _curves,
+    "ShaderNodeBlackbody": _blackbody,
+    "ShaderNodeMixRGB": _mix_rgb,
+    "ShaderNodeMix": _mix,
+    "ShaderNodeLightPath": _light_path,
+    "ShaderNodeFresnel": _fresnel,
+    "ShaderNodeLayerWeight": _layer_weight,
+    "ShaderNodeAmbientOcclusion": _occlusion,
 }

@@ -6,26 +6,47 @@ import numpy as np
 from .values import Inexact, apply, multiply
 
 _MATH = {
-    "ADD": (2, lambda a, b: a + b), "SUBTRACT": (2, lambda a, b: a - b),
-    "MULTIPLY": (2, lambda a, b: a * b), "DIVIDE": (2, lambda a, b: _divide(a, b)),
-    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c), "POWER": (2, lambda a, b: _power(a, b)),
-    "MINIMUM": (2, np.minimum), "MAXIMUM": (2, np.maximum),
-    "LESS_THAN": (2, lambda a, b: (a < b) * 1.0), "GREATER_THAN": (2, lambda a, b: (a > b) * 1.0),
-    "SQRT": (1, lambda a: np.sqrt(np.maximum(a, 0.0))), "ABSOLUTE": (1, np.abs),
-    "EXPONENT": (1, np.exp), "SIGN": (1, np.sign), "ROUND": (1, lambda a: np.floor(a + 0.5)),
-    "FLOOR": (1, np.floor), "CEIL": (1, np.ceil), "TRUNC": (1, np.trunc),
-    "FRACT": (1, lambda a: a - np.floor(a)), "MODULO": (2, lambda a, b: _modulo(a, b)),
-    "SINE": (1, np.sin), "COSINE": (1, np.cos), "TANGENT": (1, np.tan),
-    "RADIANS": (1, np.radians), "DEGREES": (1, np.degrees),
+    "ADD": (2, lambda a, b: a + b),
+    "SUBTRACT": (2, lambda a, b: a - b),
+    "MULTIPLY": (2, lambda a, b: a * b),
+    "DIVIDE": (2, lambda a, b: _divide(a, b)),
+    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c),
+    "POWER": (2, lambda a, b: _power(a, b)),
+    "MINIMUM": (2, np.minimum),
+    "MAXIMUM": (2, np.maximum),
+    "LESS_THAN": (2, lambda a, b: (a < b) * 1.0),
+    "GREATER_THAN": (2, lambda a, b: (a > b) * 1.0),
+    "SQRT": (1, lambda a: np.sqrt(np.maximum(a, 0.0))),
+    "ABSOLUTE": (1, np.abs),
+    "EXPONENT": (1, np.exp),
+    "SIGN": (1, np.sign),
+    "ROUND": (1, lambda a: np.floor(a + 0.5)),
+    "FLOOR": (1, np.floor),
+    "CEIL": (1, np.ceil),
+    "TRUNC": (1, np.trunc),
+    "FRACT": (1, lambda a: a - np.floor(a)),
+    "MODULO": (2, lambda a, b: _modulo(a, b)),
+    "SINE": (1, np.sin),
+    "COSINE": (1, np.cos),
+    "TANGENT": (1, np.tan),
+    "RADIANS": (1, np.radians),
+    "DEGREES": (1, np.degrees),
     "INVERSE_SQRT": (1, lambda a: _divide(np.ones_like(a), np.sqrt(np.maximum(a, 0.0)))),
 }
 
 _VECTOR = {
-    "ADD": (2, lambda a, b: a + b), "SUBTRACT": (2, lambda a, b: a - b),
-    "MULTIPLY": (2, lambda a, b: a * b), "DIVIDE": (2, lambda a, b: _divide(a, b)),
-    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c), "SCALE": (4, lambda a, s: a * s),
-    "MINIMUM": (2, np.minimum), "MAXIMUM": (2, np.maximum), "ABSOLUTE": (1, np.abs),
-    "FLOOR": (1, np.floor), "CEIL": (1, np.ceil), "FRACTION": (1, lambda a: a - np.floor(a)),
+    "ADD": (2, lambda a, b: a + b),
+    "SUBTRACT": (2, lambda a, b: a - b),
+    "MULTIPLY": (2, lambda a, b: a * b),
+    "DIVIDE": (2, lambda a, b: _divide(a, b)),
+    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c),
+    "SCALE": (4, lambda a, s: a * s),
+    "MINIMUM": (2, np.minimum),
+    "MAXIMUM": (2, np.maximum),
+    "ABSOLUTE": (1, np.abs),
+    "FLOOR": (1, np.floor),
+    "CEIL": (1, np.ceil),
+    "FRACTION": (1, lambda a: a - np.floor(a)),
     "DOT_PRODUCT": (2, lambda a, b: (a * b).sum(1, keepdims=True)),
     "LENGTH": (1, lambda a: np.sqrt((a * a).sum(1, keepdims=True))),
 }
@@ -57,6 +78,7 @@ def _math(ev, scope, node, socket):
     def run(*arrays):
         result = function(*(a[:, :1] for a in arrays))
         return np.clip(result, 0.0, 1.0) if clamp else result
+
     return apply(ev.store, ("math", node.operation, clamp), run, *fields)
 
 
@@ -75,6 +97,7 @@ def _clamp(ev, scope, node, socket):
 
     def run(x, a, b):
         return np.clip(x, np.minimum(a, b), np.maximum(a, b)) if ranged else np.minimum(np.maximum(x, a), b)
+
     return apply(ev.store, ("clamp", ranged), run, value, low, high)
 
 
@@ -87,11 +110,16 @@ def _map_range(ev, scope, node, socket):
     def run(x, a, b, c, d):
         t = _divide(x - a, b - a)
         return c + (np.clip(t, 0.0, 1.0) if clamp else t) * (d - c)
+
     return apply(ev.store, ("map range", clamp), run, *fields)
 
 
-NODES = {"ShaderNodeMath": _math, "ShaderNodeVectorMath": _vector_math,
-         "ShaderNodeClamp": _clamp, "ShaderNodeMapRange": _map_range}
+NODES = {
+    "ShaderNodeMath": _math,
+    "ShaderNodeVectorMath": _vector_math,
+    "ShaderNodeClamp": _clamp,
+    "ShaderNodeMapRange": _map_range,
+}
 
 
 def affine(ev, scope, node):

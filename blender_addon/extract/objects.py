@@ -8,14 +8,42 @@ from .mesh import evaluated_mesh, lightmap_uv, overlap_share, read_mesh
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES"}
 # Modifiers that make faces out of faces or anew, whose lightmap UVs then overlap. Others, such as
 # Subdivision or Decimate, keep one face per place on the surface: UVs follow without overlap.
-COPYING = {"ARRAY", "BOOLEAN", "EXPLODE", "MIRROR", "NODES", "OCEAN", "PARTICLE_INSTANCE", "REMESH", "SCREW",
-           "SKIN", "SOLIDIFY", "VOLUME_TO_MESH", "WIREFRAME"}
+COPYING = {
+    "ARRAY",
+    "BOOLEAN",
+    "EXPLODE",
+    "MIRROR",
+    "NODES",
+    "OCEAN",
+    "PARTICLE_INSTANCE",
+    "REMESH",
+    "SCREW",
+    "SKIN",
+    "SOLIDIFY",
+    "VOLUME_TO_MESH",
+    "WIREFRAME",
+}
 # Geometry nodes that make no new faces, as in "Smooth by Angle".
 KEEPING = {"NodeGroupInput", "NodeReroute", "GeometryNodeViewer", "GeometryNodeSwitch"} | {
-    "GeometryNode" + name for name in (
-        "SetShadeSmooth", "SetMaterial", "SetMaterialIndex", "SetPosition", "SetID", "StoreNamedAttribute",
-        "RemoveAttribute", "CaptureAttribute", "DeleteGeometry", "SeparateGeometry", "Triangulate",
-        "SubdivisionSurface", "SubdivideMesh", "MergeByDistance", "Transform")}
+    "GeometryNode" + name
+    for name in (
+        "SetShadeSmooth",
+        "SetMaterial",
+        "SetMaterialIndex",
+        "SetPosition",
+        "SetID",
+        "StoreNamedAttribute",
+        "RemoveAttribute",
+        "CaptureAttribute",
+        "DeleteGeometry",
+        "SeparateGeometry",
+        "Triangulate",
+        "SubdivisionSurface",
+        "SubdivideMesh",
+        "MergeByDistance",
+        "Transform",
+    )
+}
 MAX_OVERLAP = 0.01
 MAX_UV_LAYERS = 8
 
@@ -41,8 +69,11 @@ def obstacle(obj):
 
 def copying_modifiers(obj):
     """Names of the rendered modifiers that copy faces."""
-    return [m.name for m in obj.modifiers if m.show_render and m.type in COPYING
-            and not (m.type == "NODES" and _keeps_faces(m.node_group))]
+    return [
+        m.name
+        for m in obj.modifiers
+        if m.show_render and m.type in COPYING and not (m.type == "NODES" and _keeps_faces(m.node_group))
+    ]
 
 
 def _keeps_faces(tree):

@@ -11,7 +11,9 @@ MAX_CLOSURES = 8
 DEFAULT_GREY = 0.8  # what Blender shows on surfaces without a material
 GLASS = "is approximated as straight transparency"
 _DIFFUSE_LIKE = {
-    "ShaderNodeBsdfDiffuse": None, "ShaderNodeBsdfGlossy": None, "ShaderNodeBsdfAnisotropic": None,
+    "ShaderNodeBsdfDiffuse": None,
+    "ShaderNodeBsdfGlossy": None,
+    "ShaderNodeBsdfAnisotropic": None,
     "ShaderNodeBsdfTranslucent": "Translucent BSDF reflects instead of letting light through",
     "ShaderNodeSubsurfaceScattering": "Subsurface Scattering is taken as diffuse",
     "ShaderNodeBsdfToon": "Toon BSDF is taken as diffuse",
@@ -58,7 +60,10 @@ def compile_surface(material, evaluator):
     if output is None:
         evaluator.warn("has no Material Output for Cycles: it renders black")
         return Surface(material.name, [], one_sided)
-    if find_input(output, "Volume") is not None and resolve((), find_input(output, "Volume")).node is not None:
+    if (
+        find_input(output, "Volume") is not None
+        and resolve((), find_input(output, "Volume")).node is not None
+    ):
         evaluator.warn("its volume is not simulated")
     closures = _Compiler(evaluator).shader((), find_input(output, "Surface"), ())
     return Surface(material.name, _limit(closures, evaluator), one_sided)
@@ -95,7 +100,7 @@ def _settle(closure, ev):
 def _merge(weights, ev):
     """Multiplies two varying weights into one, or replaces one by its mean with a warning."""
     for i, first in enumerate(weights):
-        for second in weights[i + 1:]:
+        for second in weights[i + 1 :]:
             try:
                 product = multiply(ev.store, first, second)
             except Inexact:
@@ -153,8 +158,14 @@ class _Compiler:
         return [Closure("diffuse", self.ev.color(scope, node, "Base Color"), weights)]
 
     def _emission(self, scope, node, weights):
-        return [Closure("emission", self.ev.color(scope, node, "Color"), weights,
-                        self.ev.scalar(scope, node, "Strength", default=1.0))]
+        return [
+            Closure(
+                "emission",
+                self.ev.color(scope, node, "Color"),
+                weights,
+                self.ev.scalar(scope, node, "Strength", default=1.0),
+            )
+        ]
 
     def _bsdftransparent(self, scope, node, weights):
         return [Closure("transparent", self.ev.color(scope, node, "Color"), weights)]
@@ -174,8 +185,10 @@ class _Compiler:
     def _eeveespecular(self, scope, node, weights):
         self.ev.warn("Specular BSDF (EEVEE) is taken as diffuse and emission")
         opaque = weights + (inverted(self.ev.scalar(scope, node, "Transparency")),)
-        return [Closure("diffuse", self.ev.color(scope, node, "Base Color"), opaque),
-                Closure("emission", self.ev.color(scope, node, "Emissive Color"), opaque)]
+        return [
+            Closure("diffuse", self.ev.color(scope, node, "Base Color"), opaque),
+            Closure("emission", self.ev.color(scope, node, "Emissive Color"), opaque),
+        ]
 
     def _bsdfprincipled(self, scope, node, weights):
         ev = self.ev
@@ -196,9 +209,16 @@ class _Compiler:
             closures.append(Closure("transparent", color, weights + (clear,)))
             weights = weights + (inverted(clear),)
         self._note_ignored(scope, node)
-        closures.append(Closure("principled", color, weights, metallic=metallic,
-                                roughness=ev.scalar(scope, node, "Roughness", default=0.5),
-                                specular=self._specular(scope, node)))
+        closures.append(
+            Closure(
+                "principled",
+                color,
+                weights,
+                metallic=metallic,
+                roughness=ev.scalar(scope, node, "Roughness", default=0.5),
+                specular=self._specular(scope, node),
+            )
+        )
         return closures
 
     def _product(self, a, b):
@@ -220,8 +240,14 @@ class _Compiler:
         if other is None:
             return color
         try:
-            return apply(ev.store, "subsurface", lambda a, b, t: a + t * (b - a), color,
-                         ev.color(scope, node, "Subsurface Color"), amount)
+            return apply(
+                ev.store,
+                "subsurface",
+                lambda a, b, t: a + t * (b - a),
+                color,
+                ev.color(scope, node, "Subsurface Color"),
+                amount,
+            )
         except Inexact:
             ev.warn("the subsurface colour is ignored")
             return color

@@ -83,8 +83,10 @@ def apply(store, name, function, *fields):
 
 def _check_clip(function, fields):
     """Outside a clipped image all is zero; so must the function of zero be."""
-    outside = [np.array([f.constant if f.is_constant else replace(f, texture=None, value=(0.0,) * 3).constant])
-               for f in fields]
+    outside = [
+        np.array([f.constant if f.is_constant else replace(f, texture=None, value=(0.0,) * 3).constant])
+        for f in fields
+    ]
     if np.any(np.broadcast_to(function(*outside), (1, 3)) != 0.0):
         raise Inexact("a clipped image changed outside its border")
 

@@ -30,8 +30,9 @@ def extract_sky(scene, store, warnings):
     source = resolve((), find_input(output, "Surface")) if output is not None else None
     if source is None or source.node is None:
         return {"type": "none"}
-    return (_simple(source, store, lambda text: warnings.add(world.name, text))
-            or _rendered(scene, world, store, warnings))
+    return _simple(source, store, lambda text: warnings.add(world.name, text)) or _rendered(
+        scene, world, store, warnings
+    )
 
 
 def _constant(color):
@@ -70,8 +71,9 @@ def _environment(source):
     if node is None or node.bl_idname != "ShaderNodeTexEnvironment" or node.projection != "EQUIRECTANGULAR":
         return None
     coordinates = resolve(origin.scope, node.inputs["Vector"])
-    plain = coordinates.node is None or (coordinates.node.bl_idname == "ShaderNodeTexCoord"
-                                         and coordinates.socket.name == "Generated")
+    plain = coordinates.node is None or (
+        coordinates.node.bl_idname == "ShaderNodeTexCoord" and coordinates.socket.name == "Generated"
+    )
     if node.image is None and plain:
         raise MissingImage("no image is chosen")
     return node.image if plain else None
@@ -79,8 +81,9 @@ def _environment(source):
 
 def _rendered(scene, world, store, warnings):
     """Panorama of a world by Cycles; its mean is at hand if Cycles is missing: none, with a warning."""
-    detailed = any(n.bl_idname in {"ShaderNodeTexSky", "ShaderNodeTexEnvironment"}
-                   for n in _all_nodes(world.node_tree))
+    detailed = any(
+        n.bl_idname in {"ShaderNodeTexSky", "ShaderNodeTexEnvironment"} for n in _all_nodes(world.node_tree)
+    )
     try:
         texels = render_panorama(world, DETAILED_WIDTH if detailed else SKY_WIDTH, scene.frame_current)
     except (RuntimeError, TypeError, MissingImage) as error:
@@ -161,8 +164,12 @@ def _panoramic(camera, viewer):
     camera.type = "PANO"
     owner = camera if has(camera, "panorama_type") else camera.cycles
     owner.panorama_type = "EQUIRECTANGULAR"
-    for name, value in (("latitude_min", -math.pi / 2), ("latitude_max", math.pi / 2),
-                        ("longitude_min", -math.pi), ("longitude_max", math.pi)):
+    for name, value in (
+        ("latitude_min", -math.pi / 2),
+        ("latitude_max", math.pi / 2),
+        ("longitude_min", -math.pi),
+        ("longitude_max", math.pi),
+    ):
         setattr(owner, name, value)
     viewer.rotation_euler = (math.pi / 2, 0.0, -math.pi / 2)
 
@@ -180,8 +187,16 @@ def _set_up(scene, width, path, frame):
     settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGB", "32"
     scene.frame_set(frame)
     cycles = scene.cycles
-    for name, value in (("samples", SKY_SAMPLES), ("use_denoising", False), ("use_adaptive_sampling", False),
-                        ("device", "CPU"), ("pixel_filter_type", "BOX"), ("filter_width", 1.0),
-                        ("film_exposure", 1.0), ("sample_clamp_direct", 0.0), ("max_bounces", 0)):
+    for name, value in (
+        ("samples", SKY_SAMPLES),
+        ("use_denoising", False),
+        ("use_adaptive_sampling", False),
+        ("device", "CPU"),
+        ("pixel_filter_type", "BOX"),
+        ("filter_width", 1.0),
+        ("film_exposure", 1.0),
+        ("sample_clamp_direct", 0.0),
+        ("max_bounces", 0),
+    ):
         if has(cycles, name):
             setattr(cycles, name, value)

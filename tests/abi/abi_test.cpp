@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promises of ajar.h: checked sizes, handles, order of calls, buffers, texts, lifetimes.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -12,6 +10,8 @@
 #include <limits>
 #include <thread>
 
+#include "room_kit.h"
+
 extern "C" {
 size_t ajar_test_c_size_of_closure(void);
 size_t ajar_test_c_size_of_settings(void);
@@ -20,17 +20,22 @@ ajar_result ajar_test_c_empty_bake(void);
 
 namespace {
 
-template <class Handle> Handle handle_at(uintptr_t value) { return reinterpret_cast<Handle>(value); }
+template <class Handle>
+Handle handle_at(uintptr_t value) {
+    return reinterpret_cast<Handle>(value);
+}
 
 // ---- library and structs ---------------------------------------------------------------------
 
 TEST(Library, VersionsAndTexts) {
     EXPECT_EQ(ajar_abi_version(), AJAR_ABI_VERSION);
     EXPECT_NE(std::string(ajar_version()), "");
-    for (ajar_result code : std::initializer_list<ajar_result>{AJAR_OK, AJAR_CANCELLED, AJAR_RUNNING, AJAR_ERROR_ARGUMENT, AJAR_ERROR_INTERNAL, 77, INT32_MIN, INT32_MAX})
+    for (ajar_result code : std::initializer_list<ajar_result>{
+             AJAR_OK, AJAR_CANCELLED, AJAR_RUNNING, AJAR_ERROR_ARGUMENT, AJAR_ERROR_INTERNAL, 77, INT32_MIN, INT32_MAX})
         EXPECT_STRNE(ajar_result_text(code), "") << code;
     EXPECT_STRNE(ajar_result_text(AJAR_ERROR_HANDLE), ajar_result_text(AJAR_ERROR_STATE));
-    for (uint32_t stage : {0u, 5u, unsigned(AJAR_STAGE_COUNT), 0xffffffffu}) EXPECT_STRNE(ajar_stage_name(stage), "") << stage;
+    for (uint32_t stage : {0u, 5u, unsigned(AJAR_STAGE_COUNT), 0xffffffffu})
+        EXPECT_STRNE(ajar_stage_name(stage), "") << stage;
 }
 
 TEST(Library, CAndCppAgreeAboutLayout) {
@@ -38,11 +43,10 @@ TEST(Library, CAndCppAgreeAboutLayout) {
     EXPECT_EQ(ajar_test_c_size_of_settings(), sizeof(ajar_settings));
 }
 
-TEST(Library, AProgramInCGetsANamedErrorForAnEmptyScene) {
-    EXPECT_EQ(ajar_test_c_empty_bake(), AJAR_ERROR_INPUT);
-}
+TEST(Library, AProgramInCGetsANamedErrorForAnEmptyScene) { EXPECT_EQ(ajar_test_c_empty_bake(), AJAR_ERROR_INPUT); }
 
-template <class Struct> void expect_init(void (*init)(Struct*)) {
+template <class Struct>
+void expect_init(void (*init)(Struct*)) {
     Struct value;
     std::memset(&value, 0xa5, sizeof(value));
     init(&value);
@@ -70,7 +74,8 @@ TEST(Structs, InitFillsEveryByteAndTheSize) {
 }
 
 /// call gets a description and must refuse every wrong struct_size, and NULL.
-template <class Struct> void expect_sizes_checked(Struct value, const std::function<ajar_result(const Struct*)>& call) {
+template <class Struct>
+void expect_sizes_checked(Struct value, const std::function<ajar_result(const Struct*)>& call) {
     const uint32_t right = value.struct_size;
     for (uint32_t size : {0u, 1u, right - 1, right + 1, right * 2, 0x80000000u, 0xffffffffu}) {
         value.struct_size = size;
@@ -85,16 +90,19 @@ TEST(Structs, WrongSizesAreRefusedByTheScene) {
     uint32_t id = 0;
     ajar_texture_desc texture;
     ajar_texture_desc_init(&texture);
-    expect_sizes_checked<ajar_texture_desc>(texture, [&](auto* d) { return ajar_scene_add_texture(scene.handle(), d, &id); });
+    expect_sizes_checked<ajar_texture_desc>(texture,
+                                            [&](auto* d) { return ajar_scene_add_texture(scene.handle(), d, &id); });
     ajar_material_desc material;
     ajar_material_desc_init(&material);
-    expect_sizes_checked<ajar_material_desc>(material, [&](auto* d) { return ajar_scene_add_material(scene.handle(), d, &id); });
+    expect_sizes_checked<ajar_material_desc>(material,
+                                             [&](auto* d) { return ajar_scene_add_material(scene.handle(), d, &id); });
     ajar_mesh_desc mesh;
     ajar_mesh_desc_init(&mesh);
     expect_sizes_checked<ajar_mesh_desc>(mesh, [&](auto* d) { return ajar_scene_add_mesh(scene.handle(), d, &id); });
     ajar_instance_desc instance;
     ajar_instance_desc_init(&instance);
-    expect_sizes_checked<ajar_instance_desc>(instance, [&](auto* d) { return ajar_scene_add_instance(scene.handle(), d, &id); });
+    expect_sizes_checked<ajar_instance_desc>(instance,
+                                             [&](auto* d) { return ajar_scene_add_instance(scene.handle(), d, &id); });
     ajar_light_desc light;
     ajar_light_desc_init(&light);
     expect_sizes_checked<ajar_light_desc>(light, [&](auto* d) { return ajar_scene_add_light(scene.handle(), d, &id); });
@@ -112,7 +120,8 @@ TEST(Structs, WrongSizesAreRefusedByJobAndLayout) {
     job = kit::start(scene, kit::quick());
     ajar_progress progress;
     ajar_progress_init(&progress);
-    expect_sizes_checked<ajar_progress>(progress, [&](auto* p) { return ajar_job_poll(job, const_cast<ajar_progress*>(p)); });
+    expect_sizes_checked<ajar_progress>(progress,
+                                        [&](auto* p) { return ajar_job_poll(job, const_cast<ajar_progress*>(p)); });
     EXPECT_EQ(ajar_job_release(&job), AJAR_OK);
     ajar_layout layout = nullptr;
     ajar_layout_settings settings;

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promises of ajar.h about values: ranges, buffers, texts, progress.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -10,6 +8,8 @@
 #include <functional>
 #include <limits>
 #include <thread>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -161,7 +161,8 @@ TEST(Ranges, PagesAndLayersOfAResult) {
     EXPECT_EQ(ajar_job_layer_size(bake.handle(), 1, AJAR_LAYER_IRRADIANCE, &w, &h, &c), AJAR_ERROR_ARGUMENT);
     for (uint32_t layer : {7u, 15u, unsigned(AJAR_LAYER_BOUNCE), 1000u, 0xffffffffu})
         EXPECT_EQ(ajar_job_layer_size(bake.handle(), 0, layer, &w, &h, &c), AJAR_ERROR_ARGUMENT) << layer;
-    EXPECT_EQ(ajar_job_layer_size(bake.handle(), 0, AJAR_LAYER_SH, &w, &h, &c), AJAR_ERROR_ARGUMENT) << "keep_sh is off";
+    EXPECT_EQ(ajar_job_layer_size(bake.handle(), 0, AJAR_LAYER_SH, &w, &h, &c), AJAR_ERROR_ARGUMENT)
+        << "keep_sh is off";
     EXPECT_EQ(ajar_job_layer_size(bake.handle(), 0, AJAR_LAYER_STDERR, nullptr, &h, &c), AJAR_ERROR_ARGUMENT);
 }
 
@@ -173,7 +174,8 @@ TEST(Buffers, TooSmallIsRefusedAndNothingIsWrittenPastTheEnd) {
     const kit::Bake bake(scene, kit::quick());
     std::vector<float> buffer(16 * 16 * 3 + 1, -7.0f);
     const uint64_t needed = buffer.size() - 1;
-    EXPECT_EQ(ajar_job_read_layer(bake.handle(), 0, AJAR_LAYER_IRRADIANCE, buffer.data(), needed - 1), AJAR_ERROR_BUFFER);
+    EXPECT_EQ(ajar_job_read_layer(bake.handle(), 0, AJAR_LAYER_IRRADIANCE, buffer.data(), needed - 1),
+              AJAR_ERROR_BUFFER);
     EXPECT_EQ(ajar_job_read_layer(bake.handle(), 0, AJAR_LAYER_IRRADIANCE, nullptr, needed), AJAR_ERROR_BUFFER);
     EXPECT_EQ(buffer[0], -7.0f);
     EXPECT_EQ(ajar_job_read_layer(bake.handle(), 0, AJAR_LAYER_IRRADIANCE, buffer.data(), needed), AJAR_OK);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cancelling at any moment ends the job soon, leaves nothing behind and harms no later bake. The
 // bound here is loose, for busy machines; the benchmark measures the promised second.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -26,7 +26,8 @@ ajar_progress poll(ajar_job job) {
 /// Waits until the job has reached the stage.
 void await_stage(ajar_job job, uint32_t stage) {
     const auto begin = Clock::now();
-    while (poll(job).stage < stage && seconds_since(begin) < 60.0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (poll(job).stage < stage && seconds_since(begin) < 60.0)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     ASSERT_GE(poll(job).stage, stage);
 }
 
@@ -124,6 +125,7 @@ TEST_P(Cancel, ManyTimesAndFromManyThreads) {
     EXPECT_EQ(ajar_job_release(&job), AJAR_OK);
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u), [](const auto& info) { return std::to_string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Threads, Cancel, ::testing::Values(1u, 2u),
+                         [](const auto& info) { return std::to_string(info.param); });
 
 } // namespace

@@ -2,14 +2,14 @@
 // Random calls with a fixed seed: whatever the arguments, a known code comes back and nothing
 // crashes. Pointers are NULL or good, since a C function cannot tell others; counts never exceed
 // the memory behind them.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -37,14 +37,22 @@ private:
         return chance(0.7) ? kOdd[pick(std::size(kOdd))] : random_();
     }
     float scalar() {
-        constexpr float kOdd[] = {0.0f, -0.0f, 1.0f, -1.0f, 0.5f, 1e-45f, 1e-30f, 1e30f, -1e30f, 3.4e38f, INFINITY, -INFINITY, NAN};
+        constexpr float kOdd[] = {0.0f,  -0.0f,  1.0f,    -1.0f,    0.5f,      1e-45f, 1e-30f,
+                                  1e30f, -1e30f, 3.4e38f, INFINITY, -INFINITY, NAN};
         if (chance(0.25)) return kOdd[pick(std::size(kOdd))];
         return std::uniform_real_distribution<float>(-2.0f, 2.0f)(random_);
     }
     uint32_t size_of(size_t right) { return chance(0.93) ? static_cast<uint32_t>(right) : integer(); }
-    template <class T> const T* maybe(const T* p) { return chance(0.95) ? p : nullptr; }
-    template <class T> T* maybe(T* p) { return chance(0.95) ? p : nullptr; }
-    template <class Handle> Handle some(const std::vector<Handle>& known) {
+    template <class T>
+    const T* maybe(const T* p) {
+        return chance(0.95) ? p : nullptr;
+    }
+    template <class T>
+    T* maybe(T* p) {
+        return chance(0.95) ? p : nullptr;
+    }
+    template <class Handle>
+    Handle some(const std::vector<Handle>& known) {
         if (known.empty() || chance(0.05)) return std::bit_cast<Handle>(uintptr_t{integer()});
         return known[pick(static_cast<uint32_t>(known.size()))];
     }
@@ -75,7 +83,8 @@ private:
     ajar_result job_call();
     ajar_result layout_call();
     ajar_result add_layout_mesh(ajar_layout layout);
-    template <class Handle> ajar_result release(std::vector<Handle>& known, ajar_result (*call)(Handle*));
+    template <class Handle>
+    ajar_result release(std::vector<Handle>& known, ajar_result (*call)(Handle*));
 
     std::mt19937 random_;
     float floats_[kMemory];
@@ -86,7 +95,8 @@ private:
     std::vector<ajar_layout> layouts_;
 };
 
-template <class Handle> ajar_result Fuzzer::release(std::vector<Handle>& known, ajar_result (*call)(Handle*)) {
+template <class Handle>
+ajar_result Fuzzer::release(std::vector<Handle>& known, ajar_result (*call)(Handle*)) {
     if (known.empty() || chance(0.3)) {
         Handle random = std::bit_cast<Handle>(uintptr_t{integer()} << 32);
         return call(maybe(&random));
@@ -182,7 +192,8 @@ ajar_result Fuzzer::add_light(ajar_scene scene) {
     d.type = chance(0.95) ? pick(5) : integer();
     d.role = chance(0.95) ? pick(2) : integer();
     fill(d.transform);
-    for (float* v : {&d.color[0], &d.energy, &d.radius, &d.spot_angle, &d.spot_blend, &d.sun_angle, &d.size_x, &d.size_y, &d.spread})
+    for (float* v : {&d.color[0], &d.energy, &d.radius, &d.spot_angle, &d.spot_blend, &d.sun_angle, &d.size_x,
+                     &d.size_y, &d.spread})
         if (chance(0.3)) *v = scalar();
     d.casts_shadow = integer();
     uint32_t id;
@@ -195,31 +206,42 @@ ajar_result Fuzzer::scene_call() {
     char text[16];
     ajar_sky_desc sky;
     switch (pick(14)) {
-    case 0: {
-        ajar_scene created = nullptr;
-        const ajar_result result = ajar_scene_create(name(), maybe(&created));
-        if (created != nullptr) scenes_.push_back(created);
-        return result;
-    }
-    case 1: return chance(0.15) ? release(scenes_, ajar_scene_release) : AJAR_OK;
-    case 2: return add_texture(scene);
-    case 3: return add_material(scene);
-    case 4:
-    case 5: return add_mesh(scene);
-    case 6:
-    case 7: return add_instance(scene);
-    case 8: return add_light(scene);
-    case 9: return ajar_scene_add_page(scene, chance(0.9) ? 1 + pick(16) : integer(), chance(0.9) ? 1 + pick(16) : 0, maybe(&id));
-    case 10:
-        ajar_sky_desc_init(&sky);
-        sky.struct_size = size_of(sizeof(sky));
-        sky.type = chance(0.95) ? pick(3) : integer();
-        for (float& c : sky.color) c = scalar();
-        sky.texture = chance(0.8) ? pick(2) : integer();
-        return ajar_scene_set_sky(scene, maybe(&sky));
-    case 11: return chance(0.2) ? ajar_scene_commit(scene) : AJAR_OK;
-    case 12: return ajar_scene_warning_count(scene, maybe(&id));
-    default: return ajar_scene_warning(scene, integer(), maybe(text), pick(17), maybe(text), pick(17));
+        case 0: {
+            ajar_scene created = nullptr;
+            const ajar_result result = ajar_scene_create(name(), maybe(&created));
+            if (created != nullptr) scenes_.push_back(created);
+            return result;
+        }
+        case 1:
+            return chance(0.15) ? release(scenes_, ajar_scene_release) : AJAR_OK;
+        case 2:
+            return add_texture(scene);
+        case 3:
+            return add_material(scene);
+        case 4:
+        case 5:
+            return add_mesh(scene);
+        case 6:
+        case 7:
+            return add_instance(scene);
+        case 8:
+            return add_light(scene);
+        case 9:
+            return ajar_scene_add_page(scene, chance(0.9) ? 1 + pick(16) : integer(), chance(0.9) ? 1 + pick(16) : 0,
+                                       maybe(&id));
+        case 10:
+            ajar_sky_desc_init(&sky);
+            sky.struct_size = size_of(sizeof(sky));
+            sky.type = chance(0.95) ? pick(3) : integer();
+            for (float& c : sky.color) c = scalar();
+            sky.texture = chance(0.8) ? pick(2) : integer();
+            return ajar_scene_set_sky(scene, maybe(&sky));
+        case 11:
+            return chance(0.2) ? ajar_scene_commit(scene) : AJAR_OK;
+        case 12:
+            return ajar_scene_warning_count(scene, maybe(&id));
+        default:
+            return ajar_scene_warning(scene, integer(), maybe(text), pick(17), maybe(text), pick(17));
     }
 }
 
@@ -252,15 +274,26 @@ ajar_result Fuzzer::job_call() {
     ajar_progress_init(&progress);
     progress.struct_size = size_of(sizeof(progress));
     switch (pick(9)) {
-    case 0: return start_job();
-    case 1: return ajar_job_poll(job, maybe(&progress));
-    case 2: return chance(0.1) ? ajar_job_cancel(job) : AJAR_OK;
-    case 3: return ajar_job_wait(job, chance(0.5) ? 0.01 : -0.0);
-    case 4: return ajar_job_error(job, maybe(text), pick(65), maybe(text), pick(65));
-    case 5: return release(jobs_, ajar_job_release);
-    case 6: return ajar_job_layer_size(job, chance(0.9) ? 0 : integer(), chance(0.8) ? pick(20) : integer(), maybe(&w), maybe(&h), maybe(&c));
-    case 7: return ajar_job_read_layer(job, chance(0.9) ? 0 : integer(), chance(0.8) ? pick(20) : integer(), maybe(floats_), pick(kMemory));
-    default: return ajar_job_report(job, maybe(text), maybe(&size));
+        case 0:
+            return start_job();
+        case 1:
+            return ajar_job_poll(job, maybe(&progress));
+        case 2:
+            return chance(0.1) ? ajar_job_cancel(job) : AJAR_OK;
+        case 3:
+            return ajar_job_wait(job, chance(0.5) ? 0.01 : -0.0);
+        case 4:
+            return ajar_job_error(job, maybe(text), pick(65), maybe(text), pick(65));
+        case 5:
+            return release(jobs_, ajar_job_release);
+        case 6:
+            return ajar_job_layer_size(job, chance(0.9) ? 0 : integer(), chance(0.8) ? pick(20) : integer(), maybe(&w),
+                                       maybe(&h), maybe(&c));
+        case 7:
+            return ajar_job_read_layer(job, chance(0.9) ? 0 : integer(), chance(0.8) ? pick(20) : integer(),
+                                       maybe(floats_), pick(kMemory));
+        default:
+            return ajar_job_report(job, maybe(text), maybe(&size));
     }
 }
 
@@ -275,7 +308,8 @@ ajar_result Fuzzer::add_layout_mesh(ajar_layout layout) {
     d.positions = maybe(floats_ + pick(200));
     d.corner_vertex = maybe(indices_ + pick(200));
     std::vector<uint32_t> start(20), count(20);
-    for (uint32_t i = 0; i < 20; ++i) start[i] = chance(0.97) ? 3 * i : integer(), count[i] = chance(0.97) ? 3 : integer();
+    for (uint32_t i = 0; i < 20; ++i)
+        start[i] = chance(0.97) ? 3 * i : integer(), count[i] = chance(0.97) ? 3 : integer();
     d.polygon_start = maybe(start.data());
     d.polygon_size = maybe(count.data());
     if (chance(0.3)) d.corner_uv = floats_;
@@ -296,26 +330,34 @@ ajar_result Fuzzer::layout_call() {
     ajar_layout_settings s;
     ajar_layout created = nullptr;
     switch (pick(10)) {
-    case 0: {
-        ajar_layout_settings_init(&s);
-        s.struct_size = size_of(sizeof(s));
-        s.texels_per_meter = chance(0.8) ? 4.0f : scalar();
-        s.atlas_size = chance(0.9) ? 64 : integer();
-        s.padding = chance(0.9) ? 1 : integer();
-        s.chart_angle = chance(0.9) ? 0.5f : scalar();
-        const ajar_result result = ajar_layout_create(maybe(&s), maybe(&created));
-        if (created != nullptr) layouts_.push_back(created);
-        return result;
-    }
-    case 1: return chance(0.3) ? release(layouts_, ajar_layout_release) : AJAR_OK;
-    case 2:
-    case 3: return add_layout_mesh(layout);
-    case 4: return ajar_layout_run(layout);
-    case 5: return ajar_layout_page_count(layout, maybe(&a));
-    case 6: return ajar_layout_page_size(layout, integer(), maybe(&a), maybe(&b));
-    case 7: return ajar_layout_mesh_uv(layout, pick(3), maybe(floats_), pick(kMemory));
-    case 8: return ajar_layout_user(layout, pick(3), integer(), maybe(&a), maybe(f), maybe(f), maybe(f));
-    default: return ajar_layout_warning(layout, integer(), maybe(text), pick(17), maybe(text), pick(17));
+        case 0: {
+            ajar_layout_settings_init(&s);
+            s.struct_size = size_of(sizeof(s));
+            s.texels_per_meter = chance(0.8) ? 4.0f : scalar();
+            s.atlas_size = chance(0.9) ? 64 : integer();
+            s.padding = chance(0.9) ? 1 : integer();
+            s.chart_angle = chance(0.9) ? 0.5f : scalar();
+            const ajar_result result = ajar_layout_create(maybe(&s), maybe(&created));
+            if (created != nullptr) layouts_.push_back(created);
+            return result;
+        }
+        case 1:
+            return chance(0.3) ? release(layouts_, ajar_layout_release) : AJAR_OK;
+        case 2:
+        case 3:
+            return add_layout_mesh(layout);
+        case 4:
+            return ajar_layout_run(layout);
+        case 5:
+            return ajar_layout_page_count(layout, maybe(&a));
+        case 6:
+            return ajar_layout_page_size(layout, integer(), maybe(&a), maybe(&b));
+        case 7:
+            return ajar_layout_mesh_uv(layout, pick(3), maybe(floats_), pick(kMemory));
+        case 8:
+            return ajar_layout_user(layout, pick(3), integer(), maybe(&a), maybe(f), maybe(f), maybe(f));
+        default:
+            return ajar_layout_warning(layout, integer(), maybe(text), pick(17), maybe(text), pick(17));
     }
 }
 

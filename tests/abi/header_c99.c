@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The header as a C99 program sees it; built with -std=c99 -pedantic -Werror. */
-#include "ajar/ajar.h"
-
 #include <stddef.h>
+
+#include "ajar/ajar.h"
 
 /* Every struct must begin with its size, or init and check would look elsewhere. */
 #define BEGINS_WITH_SIZE(type) typedef char type##_begins_with_size[offsetof(type, struct_size) == 0 ? 1 : -1]

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packages through the ABI: valid, whole or not at all, the same bytes for any number of threads.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,13 +8,16 @@
 #include <filesystem>
 #include <fstream>
 
+#include "room_kit.h"
+
 namespace {
 
 /// Whether file obeys schemas/<name>.schema.json; needs Debian's Python, as ./dev does.
 bool validates(const std::string& name, const std::string& file) {
     const std::string root = AJAR_SOURCE_DIR;
     // The sanitizer's preloads are not for Python.
-    const std::string command = "env -u LD_PRELOAD /usr/bin/python3 '" + root + "/tests/support/validate.py' '" + root + "/schemas/" + name + ".schema.json' '" + file + "'";
+    const std::string command = "env -u LD_PRELOAD /usr/bin/python3 '" + root + "/tests/support/validate.py' '" + root +
+                                "/schemas/" + name + ".schema.json' '" + file + "'";
     return std::system(command.c_str()) == 0;
 }
 
@@ -25,7 +26,8 @@ void write(const kit::Bake& bake, const std::string& directory, const char* extr
 }
 
 std::vector<std::string> expected_files(bool sh) {
-    std::vector<std::string> files = {"manifest.json", "page_0.direction.dds", "page_0.direction.png", "page_0.irradiance.dds", "page_0.irradiance.exr", "page_0.quality.exr"};
+    std::vector<std::string> files = {"manifest.json",         "page_0.direction.dds",  "page_0.direction.png",
+                                      "page_0.irradiance.dds", "page_0.irradiance.exr", "page_0.quality.exr"};
     if (sh) files.push_back("page_0.sh.exr");
     return files;
 }
@@ -47,7 +49,8 @@ TEST_F(PackageAbi, ManifestAndReportValidate) {
     std::ofstream(folder_.path("report.json")) << bake.report();
     EXPECT_TRUE(validates("report", folder_.path("report.json")));
     EXPECT_NE(kit::read_file(package + "/manifest.json").find("level one"), std::string::npos);
-    for (const std::string& name : expected_files(true)) EXPECT_GT(kit::read_file(package + "/" + name).size(), 100u) << name;
+    for (const std::string& name : expected_files(true))
+        EXPECT_GT(kit::read_file(package + "/" + name).size(), 100u) << name;
 }
 
 TEST_F(PackageAbi, TheFileHoldsTheLayer) {
@@ -68,7 +71,8 @@ TEST_F(PackageAbi, BadArgumentsWriteNothing) {
     EXPECT_EQ(ajar_job_write_package(bake.handle(), nullptr, nullptr), AJAR_ERROR_ARGUMENT);
     EXPECT_EQ(ajar_job_write_package(bake.handle(), "", nullptr), AJAR_ERROR_ARGUMENT);
     for (const char* extras : {"", "{", "[1]", "7", "{\"a\": }", "\xff"})
-        EXPECT_EQ(ajar_job_write_package(bake.handle(), folder_.path("package").c_str(), extras), AJAR_ERROR_ARGUMENT) << extras;
+        EXPECT_EQ(ajar_job_write_package(bake.handle(), folder_.path("package").c_str(), extras), AJAR_ERROR_ARGUMENT)
+            << extras;
     EXPECT_TRUE(folder_.entries().empty());
 }
 
@@ -78,7 +82,8 @@ TEST_F(PackageAbi, ThePreviousPackageStaysWhenWritingFails) {
     write(bake, package, R"({"take": 1})");
     const std::string manifest = kit::read_file(package + "/manifest.json");
     EXPECT_EQ(ajar_job_write_package(bake.handle(), package.c_str(), "not json"), AJAR_ERROR_ARGUMENT);
-    EXPECT_EQ(ajar_job_write_package(bake.handle(), (package + "/page_0.quality.exr/below").c_str(), nullptr), AJAR_ERROR_IO);
+    EXPECT_EQ(ajar_job_write_package(bake.handle(), (package + "/page_0.quality.exr/below").c_str(), nullptr),
+              AJAR_ERROR_IO);
     EXPECT_NE(std::string(ajar_error_culprit()) + ajar_error_message(), "");
     EXPECT_EQ(kit::read_file(package + "/manifest.json"), manifest);
     EXPECT_EQ(folder_.entries().size(), 1 + expected_files(false).size());
@@ -98,7 +103,8 @@ std::vector<kit::Layer> all_layers(const kit::Bake& bake, uint32_t bounces) {
 }
 
 bool same_bytes(const kit::Layer& a, const kit::Layer& b) {
-    return a.data.size() == b.data.size() && std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+    return a.data.size() == b.data.size() &&
+           std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
 }
 
 /// Everything that could depend on the order of work: emissive mesh, sky, glass, seams, pilot.
@@ -115,7 +121,8 @@ void fill_rich_scene(kit::Scene& scene) {
     scene.instance(scene.mesh(room), grey, page, "room");
     scene.instance(scene.mesh(kit::plane(1.5f, 1.0f)), grey, second, "table");
     scene.instance(scene.mesh(kit::plane(1.0f, 2.0f)), scene.material({glass}), AJAR_NONE, "glass");
-    scene.instance(scene.mesh(kit::box({1, 1, 0.5f}, {1.2f, 1.2f, 0.7f}, false)), scene.emitter({9, 7, 4}), AJAR_NONE, "lamp");
+    scene.instance(scene.mesh(kit::box({1, 1, 0.5f}, {1.2f, 1.2f, 0.7f}, false)), scene.emitter({9, 7, 4}), AJAR_NONE,
+                   "lamp");
     scene.point_light({-1, 1, 2.5f}, 30.0f, 0.05f);
     scene.point_light({1, -1, 2.5f}, 30.0f, 0.0f, true);
     scene.sky({0.5f, 0.7f, 1.0f});
@@ -146,13 +153,15 @@ TEST(Threads, LayersAndPackagesAreTheSameBytes) {
         const kit::Bake bake(scene, rich_settings(threads));
         const std::vector<kit::Layer> layers = all_layers(bake, 2);
         ASSERT_EQ(layers.size(), reference.size());
-        for (size_t i = 0; i < layers.size(); ++i) EXPECT_TRUE(same_bytes(layers[i], reference[i])) << "layer " << i << ", threads " << threads;
+        for (size_t i = 0; i < layers.size(); ++i)
+            EXPECT_TRUE(same_bytes(layers[i], reference[i])) << "layer " << i << ", threads " << threads;
         const std::string number = std::to_string(threads);
         write(bake, folder.path(number));
         for (const std::string& file : files) {
             if (file == "1") continue;
             const std::string name = file.substr(2);
-            EXPECT_EQ(kit::read_file(folder.path(number + "/" + name)), kit::read_file(folder.path("1/" + name))) << name << ", threads " << threads;
+            EXPECT_EQ(kit::read_file(folder.path(number + "/" + name)), kit::read_file(folder.path("1/" + name)))
+                << name << ", threads " << threads;
         }
     }
 }

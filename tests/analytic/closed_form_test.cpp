@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Closed forms of direct and bounced light (algorithms.md 12).
-#include "scene_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "scene_kit.h"
 
 namespace {
 
@@ -35,7 +35,8 @@ double lambert(const std::vector<Vec>& corners, const Vec& p) {
 double lambert_texel(const std::vector<Vec>& corners, uint32_t x, uint32_t y, uint32_t size, float edge) {
     double sum = 0.0;
     for (int i = 0; i < 64; ++i)
-        sum += lambert(corners, {(x + (i % 8 + 0.5) / 8) / size * edge - edge / 2, (y + (i / 8 + 0.5) / 8) / size * edge - edge / 2, 0.0});
+        sum += lambert(corners, {(x + (i % 8 + 0.5) / 8) / size * edge - edge / 2,
+                                 (y + (i / 8 + 0.5) / 8) / size * edge - edge / 2, 0.0});
     return sum / 64.0;
 }
 
@@ -81,7 +82,9 @@ TEST(ClosedForm, EmissiveRectangleOnPlane) {
     const kit::Layer e = kit::Bake(scene, s).layer(AJAR_LAYER_IRRADIANCE);
     for (uint32_t y = 0; y < kSize; ++y)
         for (uint32_t x = 0; x < kSize; ++x) {
-            const double expected = 3.0 * lambert_texel({{-0.5, 0.3, 1}, {0.7, 0.3, 1}, {0.7, -0.4, 1}, {-0.5, -0.4, 1}}, x, y, kSize, 4.0f);
+            const double expected =
+                3.0 *
+                lambert_texel({{-0.5, 0.3, 1}, {0.7, 0.3, 1}, {0.7, -0.4, 1}, {-0.5, -0.4, 1}}, x, y, kSize, 4.0f);
             ASSERT_NEAR(e.at(x, y) / expected, 1.0, 0.005) << x << ' ' << y;
         }
 }
@@ -106,7 +109,9 @@ TEST(ClosedForm, AreaLampEqualsItsRadiance) {
     const double radiance = 60.0 / (4.0 * 1.2 * 0.7);
     for (uint32_t y = 0; y < kSize; ++y)
         for (uint32_t x = 0; x < kSize; ++x) {
-            const double expected = radiance * lambert_texel({{-0.5, 0.3, 1}, {0.7, 0.3, 1}, {0.7, -0.4, 1}, {-0.5, -0.4, 1}}, x, y, kSize, 4.0f);
+            const double expected =
+                radiance *
+                lambert_texel({{-0.5, 0.3, 1}, {0.7, 0.3, 1}, {0.7, -0.4, 1}, {-0.5, -0.4, 1}}, x, y, kSize, 4.0f);
             ASSERT_NEAR(e.at(x, y) / expected, 1.0, 0.005) << x << ' ' << y;
         }
 }
@@ -132,7 +137,8 @@ TEST(ClosedForm, HoleInWallBeforeSky) {
     const kit::Layer e = kit::Bake(scene, kit::settings(1, 1 << 17)).layer(AJAR_LAYER_IRRADIANCE);
     for (uint32_t y = 0; y < kSize; ++y)
         for (uint32_t x = 0; x < kSize; ++x) {
-            const double expected = lambert_texel({{kX0, kY0, kH}, {kX1, kY0, kH}, {kX1, kY1, kH}, {kX0, kY1, kH}}, x, y, kSize, 0.5f);
+            const double expected =
+                lambert_texel({{kX0, kY0, kH}, {kX1, kY0, kH}, {kX1, kY1, kH}, {kX0, kY1, kH}}, x, y, kSize, 0.5f);
             ASSERT_NEAR(e.at(x, y) / expected, 1.0, 0.005) << x << ' ' << y;
         }
 }
@@ -144,7 +150,8 @@ TEST(ClosedForm, LambertianSphereIndirect) {
     constexpr uint32_t kBounces = 24;
     const auto mean_irradiance = [&](int subdivisions) {
         kit::Scene scene;
-        scene.instance(scene.mesh(kit::sphere_inside(1.0f, subdivisions)), scene.diffuse({kRho, kRho, kRho}), scene.page(512, 512));
+        scene.instance(scene.mesh(kit::sphere_inside(1.0f, subdivisions)), scene.diffuse({kRho, kRho, kRho}),
+                       scene.page(512, 512));
         scene.point_light({0.3f, 0.2f, -0.1f}, kWatts, 0.0f, true);
         scene.commit();
         ajar_settings s = kit::settings(kBounces, 256);

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // White furnace (algorithms.md 12.2): in any closed room of uniform radiance and reflectance the
 // irradiance of bounce b is pi Le rho^b at every texel, without noise.
-#include "scene_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "scene_kit.h"
 
 namespace {
 
 void expect_furnace(const kit::MeshData& room, float rho, uint32_t bounces) {
     constexpr float kRadiance = 0.8f;
     kit::Scene scene("furnace");
-    scene.instance(scene.mesh(room), scene.emitter({kRadiance, kRadiance, kRadiance}, {rho, rho, rho}), scene.page(64, 64));
+    scene.instance(scene.mesh(room), scene.emitter({kRadiance, kRadiance, kRadiance}, {rho, rho, rho}),
+                   scene.page(64, 64));
     scene.commit();
     ajar_settings s = kit::settings(bounces);
     s.keep_bounces = 1;

@@ -19,7 +19,9 @@ from support import run  # noqa: E402
 
 
 def parse():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument('blend')
     parser.add_argument('--out', required=True)
     parser.add_argument('--density', default=2)
@@ -31,14 +33,18 @@ def parse():
     parser.add_argument('--fraction', default=0.1)
     parser.add_argument('--keep-materials', action='store_true')
     parser.add_argument('--keep-roles', action='store_true')
-    parser.add_argument('--reuse-reference', action='store_true', help="only if the lightmap UVs are the same")
+    parser.add_argument(
+        '--reuse-reference', action='store_true', help="only if the lightmap UVs are the same"
+    )
     return parser.parse_known_args()
 
 
 def prepare(args, folder, log):
     """Copy of the input made for the comparison."""
     path = os.path.join(folder, os.path.basename(args.blend))
-    flags = [flag for flag in ('--keep-materials', '--keep-roles') if getattr(args, flag[2:].replace('-', '_'))]
+    flags = [
+        flag for flag in ('--keep-materials', '--keep-roles') if getattr(args, flag[2:].replace('-', '_'))
+    ]
     run.script("prepare_strict.py", os.path.abspath(args.blend), ['--out', path, *flags], log)
     return path
 
@@ -46,9 +52,26 @@ def prepare(args, folder, log):
 def bake_reference(args, blend, package, reference, log):
     """Bake with Cycles."""
     roles = ['--without-direct', 'PRIMARY'] if args.keep_roles else []
-    run.script("cycles_bake.py", blend, ['--package', package, '--out', reference, '--samples', args.samples,
-                                         '--repeats', args.repeats, '--bounces', args.bounces,
-                                         '--fraction', args.fraction, *roles], log)
+    run.script(
+        "cycles_bake.py",
+        blend,
+        [
+            '--package',
+            package,
+            '--out',
+            reference,
+            '--samples',
+            args.samples,
+            '--repeats',
+            args.repeats,
+            '--bounces',
+            args.bounces,
+            '--fraction',
+            args.fraction,
+            *roles,
+        ],
+        log,
+    )
 
 
 def main():
@@ -56,12 +79,29 @@ def main():
     folder = os.path.abspath(args.out)
     os.makedirs(os.path.join(folder, "ajar"), exist_ok=True)
     log, reference = os.path.join(folder, "log.txt"), os.path.join(folder, "reference.npz")
-    blend, package = run.bake(prepare(args, folder, log), os.path.join(folder, "ajar"), [
-        '--density', args.density, '--bounces', args.bounces, '--samples', args.ajar_samples], log, args.preset)
+    blend, package = run.bake(
+        prepare(args, folder, log),
+        os.path.join(folder, "ajar"),
+        ['--density', args.density, '--bounces', args.bounces, '--samples', args.ajar_samples],
+        log,
+        args.preset,
+    )
     if not (args.reuse_reference and os.path.exists(reference)):
         bake_reference(args, blend, package, reference, log)
-    return subprocess.run([sys.executable, os.path.join(HERE, "compare_bake.py"), '--package', package,
-                           '--reference', reference, '--out', folder, *more], check=False).returncode
+    return subprocess.run(
+        [
+            sys.executable,
+            os.path.join(HERE, "compare_bake.py"),
+            '--package',
+            package,
+            '--reference',
+            reference,
+            '--out',
+            folder,
+            *more,
+        ],
+        check=False,
+    ).returncode
 
 
 if __name__ == "__main__":

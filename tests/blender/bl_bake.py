@@ -87,7 +87,9 @@ def check_cancel(scene):
     assert job.manager.last.result == "cancelled" and not job.manager.running
     with open(manifest, "rb") as file:
         assert file.read() == before
-    assert not [name for name in os.listdir(os.path.join(FOLDER, "out")) if name not in ("package", "report.json")]
+    assert not [
+        name for name in os.listdir(os.path.join(FOLDER, "out")) if name not in ("package", "report.json")
+    ]
 
 
 def check_reload():

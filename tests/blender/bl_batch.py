@@ -28,7 +28,9 @@ def command(blend, arguments, addons=False):
 
 def run(blend, *arguments, addons=False):
     """(exit code, output) of a batch bake."""
-    result = subprocess.run(command(blend, arguments, addons), capture_output=True, text=True, timeout=200, check=False)
+    result = subprocess.run(
+        command(blend, arguments, addons), capture_output=True, text=True, timeout=200, check=False
+    )
     return result.returncode, result.stdout + result.stderr
 
 
@@ -41,8 +43,24 @@ def digest(path):
 def check_bake(blend):
     """A bake leaves blend, package and report, prints progress and keeps its input."""
     out, before = os.path.join(FOLDER, "out"), digest(blend)
-    code, text = run(blend, "--preset", "draft", "--out", out, "--density", "4", "--samples", "16", "--bounces", "1",
-                     "--threads", "1", "--seed", "3", addons="BLENDER_USER_SCRIPTS" in os.environ)
+    code, text = run(
+        blend,
+        "--preset",
+        "draft",
+        "--out",
+        out,
+        "--density",
+        "4",
+        "--samples",
+        "16",
+        "--bounces",
+        "1",
+        "--threads",
+        "1",
+        "--seed",
+        "3",
+        addons="BLENDER_USER_SCRIPTS" in os.environ,
+    )
     assert code == 0, text
     assert digest(blend) == before and "ajar: " in text and "%" in text
     for name in ("room.blend", "package/manifest.json", "report.json"):
@@ -93,8 +111,12 @@ def check_errors(blend):
 def check_cancel(blend):
     """SIGTERM cancels: code 2, no package."""
     out = os.path.join(FOLDER, "cancelled")
-    process = subprocess.Popen(command(blend, ["--preset", "reference", "--out", out, "--density", "64"]),
-                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    process = subprocess.Popen(
+        command(blend, ["--preset", "reference", "--out", out, "--density", "64"]),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
     for line in process.stdout:
         if line.startswith("ajar: ") and "warning" not in line:
             break
@@ -102,7 +124,9 @@ def check_cancel(blend):
     process.send_signal(signal.SIGTERM)
     text = process.communicate(timeout=30)[0]
     assert process.returncode == 2, (process.returncode, text)
-    assert not os.path.exists(os.path.join(out, "package")) and not os.path.exists(os.path.join(out, "room.blend"))
+    assert not os.path.exists(os.path.join(out, "package")) and not os.path.exists(
+        os.path.join(out, "room.blend")
+    )
 
 
 def main():

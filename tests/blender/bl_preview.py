@@ -50,8 +50,9 @@ def grouped(name, color):
     else:
         group.inputs.new("NodeSocketColor", "Color")
         group.outputs.new("NodeSocketShader", "Shader")
-    start, node, end = (group.nodes.new(kind) for kind in
-                        ("NodeGroupInput", "ShaderNodeBsdfDiffuse", "NodeGroupOutput"))
+    start, node, end = (
+        group.nodes.new(kind) for kind in ("NodeGroupInput", "ShaderNodeBsdfDiffuse", "NodeGroupOutput")
+    )
     group.links.new(start.outputs[0], node.inputs["Color"])
     group.links.new(node.outputs[0], end.inputs[0])
     material = diffuse(name, color)
@@ -67,8 +68,9 @@ def mixed(name, factor, color, emission):
     """Mix of diffuse and emission behind a reroute."""
     material = diffuse(name, color)
     tree = material.node_tree
-    glow, mix, turn = (tree.nodes.new(kind) for kind in
-                       ("ShaderNodeEmission", "ShaderNodeMixShader", "NodeReroute"))
+    glow, mix, turn = (
+        tree.nodes.new(kind) for kind in ("ShaderNodeEmission", "ShaderNodeMixShader", "NodeReroute")
+    )
     glow.inputs["Color"].default_value = (*emission, 1.0)
     mix.inputs[0].default_value = factor
     tree.links.new(tree.nodes["Diffuse BSDF"].outputs[0], mix.inputs[1])
@@ -82,7 +84,7 @@ def plane(name, x, materials, mesh=None, page=0):
     """A unit square that faces +Z at (x, 0, 0)."""
     if mesh is None:
         mesh = bpy.data.meshes.new(name)
-        corners = [(-.5, -.5, 0), (.5, -.5, 0), (.5, .5, 0), (-.5, .5, 0)]
+        corners = [(-0.5, -0.5, 0), (0.5, -0.5, 0), (0.5, 0.5, 0), (-0.5, 0.5, 0)]
         mesh.from_pydata(corners, [], [(0, 1, 2, 3)])
         mesh.uv_layers.new(name="UVMap")
         for material in materials:
@@ -105,15 +107,30 @@ def build():
     objects = {
         "gray": plane("gray", 0, [gray]),
         "page1": plane("page1", 1, [gray], page=1),
-        "metal": plane("metal", 2, [principled("Metal", Base_Color=(1, 1, 1, 1), Metallic=1.0, Roughness=0.5)]),
-        "plastic": plane("plastic", 3, [principled("Plastic", Base_Color=(.5, .5, .5, 1), Roughness=0.5)]),
-        "clear": plane("clear", 4, [principled("Clear", Base_Color=(.5, .5, .5, 1), Alpha=0.25, Specular=0.0)]),
+        "metal": plane(
+            "metal", 2, [principled("Metal", Base_Color=(1, 1, 1, 1), Metallic=1.0, Roughness=0.5)]
+        ),
+        "plastic": plane("plastic", 3, [principled("Plastic", Base_Color=(0.5, 0.5, 0.5, 1), Roughness=0.5)]),
+        "clear": plane(
+            "clear", 4, [principled("Clear", Base_Color=(0.5, 0.5, 0.5, 1), Alpha=0.25, Specular=0.0)]
+        ),
         "empty": plane("empty", 5, []),
         "unmapped": plane("unmapped", 6, [gray], page=-1),
         "group": plane("group", 9, [grouped("Grouped", (0.5, 0.25, 0.125))]),
         "mixed": plane("mixed", 10, [mixed("Mixed", 0.25, (0.8, 0.8, 0.8), (2.0, 1.0, 0.0))]),
-        "glow": plane("glow", 7, [principled("Glow", Base_Color=(0, 0, 0, 1), Specular=0.0,
-                                             Emission=(1, 0.5, 0.25, 1), Emission_Strength=2.0)]),
+        "glow": plane(
+            "glow",
+            7,
+            [
+                principled(
+                    "Glow",
+                    Base_Color=(0, 0, 0, 1),
+                    Specular=0.0,
+                    Emission=(1, 0.5, 0.25, 1),
+                    Emission_Strength=2.0,
+                )
+            ],
+        ),
     }
     shared = plane("shared", 8, [], mesh=objects["gray"].data, page=1)
     shared.ajar.uv_scale, shared.ajar.uv_offset = (0.5, 0.5), (0.25, 0.25)
@@ -154,12 +171,20 @@ def state():
             slots.append((link, shown, slot.material.name if slot.material else None))
             slot.link = link
         objects[obj.name] = (slots, obj.hide_render, obj.hide_viewport, sorted(set(obj.keys()) - {"ajar"}))
-    meshes = {mesh.name: ([m and m.name for m in mesh.materials], [u.name for u in mesh.uv_layers],
-                          mesh.uv_layers.active.name, [u.active_render for u in mesh.uv_layers])
-              for mesh in bpy.data.meshes}
+    meshes = {
+        mesh.name: (
+            [m and m.name for m in mesh.materials],
+            [u.name for u in mesh.uv_layers],
+            mesh.uv_layers.active.name,
+            [u.active_render for u in mesh.uv_layers],
+        )
+        for mesh in bpy.data.meshes
+    }
     trees = {m.name: sorted((n.name, n.bl_idname) for n in m.node_tree.nodes) for m in bpy.data.materials}
-    return json.dumps([objects, meshes, trees, scene.world.name, len(bpy.data.worlds),
-                       len(bpy.data.node_groups)], sort_keys=True)
+    return json.dumps(
+        [objects, meshes, trees, scene.world.name, len(bpy.data.worlds), len(bpy.data.node_groups)],
+        sort_keys=True,
+    )
 
 
 def bake(pages=IRRADIANCE):
@@ -174,7 +199,7 @@ def patch(pixels, index):
     left = int((index + 0.25) / 11 * width)
     right = int((index + 0.75) / 11 * width)
     middle = pixels.shape[0] // 2
-    return pixels[middle - 2:middle + 2, left:right, :3].mean(axis=(0, 1))
+    return pixels[middle - 2 : middle + 2, left:right, :3].mean(axis=(0, 1))
 
 
 def expect(name, got, want, tolerance=2e-3):
@@ -196,7 +221,12 @@ def check_picture():
     specular *= 1 + 0.04 * (1 - 0.864 - 0.0187) / (0.864 + 0.0187)
     expect("plastic", patch(pixels, 3), (specular + 0.5 * (1 - specular)) * pages[0] / math.pi, 5e-3)
     specular = 0.0187  # B of roughness 0.5: Specular 0 still reflects at grazing angles
-    expect("clear", patch(pixels, 4), 0.25 * (specular + 0.5 * (1 - specular)) * pages[0] / math.pi + 0.75 * sky, 5e-3)
+    expect(
+        "clear",
+        patch(pixels, 4),
+        0.25 * (specular + 0.5 * (1 - specular)) * pages[0] / math.pi + 0.75 * sky,
+        5e-3,
+    )
     expect("empty slot", patch(pixels, 5), 0.8 * pages[0] / math.pi)
     expect("unmapped", patch(pixels, 6), 0.5 * pages.mean(axis=0) / math.pi)
     expect("glow", patch(pixels, 7), numpy.array((2.0, 1.0, 0.5)), 3e-2)

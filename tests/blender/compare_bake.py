@@ -54,7 +54,7 @@ def _all_neighbours(mask, label):
     centre = label[1:-1, 1:-1]
     for dy in (0, 1, 2):
         for dx in (0, 1, 2):
-            window = np.s_[dy:dy + mask.shape[0] - 2, dx:dx + mask.shape[1] - 2]
+            window = np.s_[dy : dy + mask.shape[0] - 2, dx : dx + mask.shape[1] - 2]
             inner &= mask[window] & (label[window] == centre)
     return result
 
@@ -71,8 +71,9 @@ class Texels:
         self.error = np.hypot(self.ajar_error, self.reference_error)
         self.position, self.object, self.material = pick('position'), pick('object'), pick('material')
         self.border, self.back = pick('border'), pick('back')
-        self.xy = np.concatenate([np.stack([np.full(p.valid.sum(), p.index), *np.nonzero(p.valid)[::-1]], -1)
-                                  for p in pages])
+        self.xy = np.concatenate(
+            [np.stack([np.full(p.valid.sum(), p.index), *np.nonzero(p.valid)[::-1]], -1) for p in pages]
+        )
 
     def agree(self, tolerance, sigma):
         """Mask of texels that agree."""
@@ -94,15 +95,19 @@ def summarize(texels, args):
         'texels': len(agree),
         'mean_ratio': float(texels.a.mean() / texels.r.mean()),
         'mean_ratio_rgb': (texels.ajar.mean(0) / np.where(mean > 0, mean, 1)).tolist(),
-        'mean_ratio_interior': float(texels.a[inner].mean() / texels.r[inner].mean()) if inner.any() else None,
+        'mean_ratio_interior': float(texels.a[inner].mean() / texels.r[inner].mean())
+        if inner.any()
+        else None,
         'share': float(agree.mean()),
         'share_interior': float(agree[inner].mean()) if inner.any() else None,
         'share_border': float(agree[~inner].mean()) if (~inner).any() else None,
         'border_texels': int((~inner).sum()),
         'by_back_share': back_rows(texels, agree),
         'share_without_noise_allowance': float(texels.agree(args.tolerance, 0).mean()),
-        'relative_percentiles': dict(zip(bounds, np.percentile(relative, [float(b) for b in bounds]).tolist())),
-        'rms_relative': float(np.sqrt(np.mean(relative ** 2))),
+        'relative_percentiles': dict(
+            zip(bounds, np.percentile(relative, [float(b) for b in bounds]).tolist())
+        ),
+        'rms_relative': float(np.sqrt(np.mean(relative**2))),
         'ajar_median_relative_stderr': _median_ratio(texels.ajar_error, texels.a),
         'reference_median_relative_stderr': _median_ratio(texels.reference_error, texels.r),
         'z_rms': float(np.sqrt(np.mean(((texels.a - texels.r) / np.maximum(texels.error, 1e-12)) ** 2))),
@@ -115,8 +120,11 @@ def back_rows(texels, agree):
     for low, high in ((-1, 0), (0, 0.05), (0.05, 0.25), (0.25, 0.6), (0.6, 1)):
         mask = (texels.back > low) & (texels.back <= high)
         if mask.any():
-            rows[f"<={high}"] = [int(mask.sum()), round(float(texels.a[mask].sum() / max(texels.r[mask].sum(), 1e-30)), 4),
-                                round(float(agree[mask].mean()), 4)]
+            rows[f"<={high}"] = [
+                int(mask.sum()),
+                round(float(texels.a[mask].sum() / max(texels.r[mask].sum(), 1e-30)), 4),
+                round(float(agree[mask].mean()), 4),
+            ]
     return rows
 
 
@@ -130,9 +138,15 @@ def by_group(texels, labels, names, agree):
     rows = []
     for index in np.unique(labels[labels >= 0]):
         mask = labels == index
-        rows.append({'name': names[index], 'texels': int(mask.sum()),
-                     'ratio': float(texels.a[mask].sum() / max(texels.r[mask].sum(), 1e-30)),
-                     'share': float(agree[mask].mean()), 'bad': int((~agree[mask]).sum())})
+        rows.append(
+            {
+                'name': names[index],
+                'texels': int(mask.sum()),
+                'ratio': float(texels.a[mask].sum() / max(texels.r[mask].sum(), 1e-30)),
+                'share': float(agree[mask].mean()),
+                'bad': int((~agree[mask]).sum()),
+            }
+        )
     return sorted(rows, key=lambda row: -row['bad'])
 
 
@@ -141,12 +155,18 @@ def worst(texels, meta, count):
     excess = np.abs(texels.a - texels.r) - 2 * texels.error
     rows = []
     for i in np.argsort(-excess)[:count]:
-        rows.append({
-            'page_x_y': texels.xy[i].tolist(), 'position': np.round(texels.position[i], 3).tolist(),
-            'object': _name(meta['objects'], texels.object[i]),
-            'material': _name(meta['materials'], texels.material[i]), 'border': bool(texels.border[i]),
-            'ajar': float(texels.a[i]), 'reference': float(texels.r[i]),
-            'sigmas': float((texels.a[i] - texels.r[i]) / max(texels.error[i], 1e-12))})
+        rows.append(
+            {
+                'page_x_y': texels.xy[i].tolist(),
+                'position': np.round(texels.position[i], 3).tolist(),
+                'object': _name(meta['objects'], texels.object[i]),
+                'material': _name(meta['materials'], texels.material[i]),
+                'border': bool(texels.border[i]),
+                'ajar': float(texels.a[i]),
+                'reference': float(texels.r[i]),
+                'sigmas': float((texels.a[i] - texels.r[i]) / max(texels.error[i], 1e-12)),
+            }
+        )
     return rows
 
 
@@ -156,7 +176,9 @@ def _name(names, index):
 
 def write_maps(page, directory, exposure):
     """PNG of Ajar | reference | signed relative error (red: Ajar brighter, full at 20%)."""
-    relative = ((page.ajar - page.reference) @ LUMINANCE) / np.maximum(page.reference @ LUMINANCE, 0.02 / exposure)
+    relative = ((page.ajar - page.reference) @ LUMINANCE) / np.maximum(
+        page.reference @ LUMINANCE, 0.02 / exposure
+    )
     scaled = np.clip(relative / 0.2, -1, 1)[..., None]
     color = np.where(scaled > 0, 1 - scaled * [0, 1, 1], 1 + scaled * [1, 1, 0])
     color[~page.valid] = 0.25
@@ -178,7 +200,9 @@ def print_report(summary, materials, objects, texels):
 
 
 def parse():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument('--package', required=True)
     parser.add_argument('--reference', required=True)
     parser.add_argument('--out', help="folder for compare.json and error maps")
@@ -202,8 +226,9 @@ def load(package, reference_path, max_back=0.25):
 
 def failed(summary, args):
     """True if a required bound is missed."""
-    return ((args.require_mean is not None and not abs(summary['mean_ratio'] - 1) <= args.require_mean)
-            or (args.require_share is not None and not summary['share'] >= args.require_share))
+    return (args.require_mean is not None and not abs(summary['mean_ratio'] - 1) <= args.require_mean) or (
+        args.require_share is not None and not summary['share'] >= args.require_share
+    )
 
 
 def main():
@@ -223,7 +248,11 @@ def main():
         for page in pages:
             write_maps(page, args.out, 0.5 / max(np.percentile(texels.r, 75), 1e-12))
         with open(os.path.join(args.out, 'compare.json'), 'w', encoding='utf-8') as file:
-            json.dump({'summary': summary, 'materials': materials, 'objects': objects, 'worst': rows}, file, indent=1)
+            json.dump(
+                {'summary': summary, 'materials': materials, 'objects': objects, 'worst': rows},
+                file,
+                indent=1,
+            )
     return int(failed(summary, args))
 
 

@@ -33,10 +33,19 @@ def parse():
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--threads', type=int, default=0)
     parser.add_argument('--plain-diffuse', action='store_true', help="Principled becomes Diffuse")
-    parser.add_argument('--fraction', type=float, default=1.0,
-                        help="bake a random share of all polygons only: fewer texels, each of them better")
-    parser.add_argument('--without-direct', nargs='*', default=[], metavar='ROLE',
-                        help="leave out the direct light of lamps with these roles")
+    parser.add_argument(
+        '--fraction',
+        type=float,
+        default=1.0,
+        help="bake a random share of all polygons only: fewer texels, each of them better",
+    )
+    parser.add_argument(
+        '--without-direct',
+        nargs='*',
+        default=[],
+        metavar='ROLE',
+        help="leave out the direct light of lamps with these roles",
+    )
     return scene.parse_arguments(parser)
 
 
@@ -65,7 +74,9 @@ class BakeMaterials:
     def _image(self, page, group):
         if (page, group) not in self.images:
             size = self.pages[page]
-            self.images[page, group] = cycles.float_image(f"page{page}.{group}", size['width'], size['height'])
+            self.images[page, group] = cycles.float_image(
+                f"page{page}.{group}", size['width'], size['height']
+            )
         return self.images[page, group]
 
 
@@ -132,7 +143,10 @@ def bake_repeats(objects, materials, args, bounces, passes):
         for obj in objects:
             cycles.bake_irradiance([obj], passes, merge.PAGE_UV)
         statistics.add(materials)
-        print(f"cycles bake {repeat + 1}/{args.repeats}: {samples} samples, {time.time() - begin:.1f} s", flush=True)
+        print(
+            f"cycles bake {repeat + 1}/{args.repeats}: {samples} samples, {time.time() - begin:.1f} s",
+            flush=True,
+        )
     return statistics
 
 
@@ -190,9 +204,22 @@ def main():
     seconds = time.time() - begin
     minus = bake_lamp_direct(merged, materials, args) if args.without_direct else None
     surroundings.examine(pieces, maps, total.valid)
-    save(args.out, pages, total, minus, maps, {
-        'objects': objects, 'materials': names, 'samples': args.samples, 'repeats': args.repeats,
-        'bounces': args.bounces, 'seconds': seconds, 'pages': len(pages)})
+    save(
+        args.out,
+        pages,
+        total,
+        minus,
+        maps,
+        {
+            'objects': objects,
+            'materials': names,
+            'samples': args.samples,
+            'repeats': args.repeats,
+            'bounces': args.bounces,
+            'seconds': seconds,
+            'pages': len(pages),
+        },
+    )
     print(f"wrote {args.out} after {seconds:.1f} s of baking")
 
 

@@ -20,29 +20,39 @@ sys.path.insert(0, HERE)
 import compare_bake  # noqa: E402
 from support import light_table, run  # noqa: E402
 
-DENSITY = 32         # texels per metre: light hardly changes within a texel
+DENSITY = 32  # texels per metre: light hardly changes within a texel
 AJAR_SAMPLES = 4096
 CYCLES_SAMPLES = 1024
-MAX_NOISE = 0.02     # relative standard error of a texel that counts
-MAX_STEP = 0.06      # relative difference to a neighbour beyond which a texel lies on an edge
+MAX_NOISE = 0.02  # relative standard error of a texel that counts
+MAX_STEP = 0.06  # relative difference to a neighbour beyond which a texel lies on an edge
 
 
 def build(name, folder, log):
     """Write a case's .blend."""
     path = os.path.join(folder, f"{name}.blend")
-    code = (f"import sys; sys.path.insert(0, {HERE!r}); import bpy; from support import light_cases; "
-            f"light_cases.build_case({name!r}); bpy.ops.wm.save_as_mainfile(filepath={path!r})")
+    code = (
+        f"import sys; sys.path.insert(0, {HERE!r}); import bpy; from support import light_cases; "
+        f"light_cases.build_case({name!r}); bpy.ops.wm.save_as_mainfile(filepath={path!r})"
+    )
     run.blender(['--factory-startup', '--python-exit-code', '1', '--python-expr', code], log)
     return path
 
 
 def bake(path, folder, log):
     """Bake with Ajar and with Cycles; returns (package, reference)."""
-    blend, package = run.bake(path, os.path.join(folder, "out"), ['--density', DENSITY, '--bounces', 0,
-                                                                  '--samples', AJAR_SAMPLES], log)
+    blend, package = run.bake(
+        path,
+        os.path.join(folder, "out"),
+        ['--density', DENSITY, '--bounces', 0, '--samples', AJAR_SAMPLES],
+        log,
+    )
     reference = os.path.join(folder, "reference.npz")
-    run.script("cycles_bake.py", blend, ['--package', package, '--out', reference, '--bounces', 0,
-                                         '--samples', CYCLES_SAMPLES], log)
+    run.script(
+        "cycles_bake.py",
+        blend,
+        ['--package', package, '--out', reference, '--bounces', 0, '--samples', CYCLES_SAMPLES],
+        log,
+    )
     return package, reference
 
 
@@ -53,7 +63,9 @@ def quiet_texels(pages):
         light = page.reference @ compare_bake.LUMINANCE
         error = np.hypot(page.reference_error, page.ajar_error)
         with np.errstate(all='ignore'):
-            page.valid &= (light * 3 > 1e-3 * peak) & (error < MAX_NOISE * light) & ~page.border & ~_edges(light)
+            page.valid &= (
+                (light * 3 > 1e-3 * peak) & (error < MAX_NOISE * light) & ~page.border & ~_edges(light)
+            )
     return compare_bake.Texels(pages)
 
 
@@ -61,7 +73,9 @@ def _edges(light):
     """True where a neighbour differs much."""
     result = np.zeros_like(light, bool)
     for axis in (0, 1):
-        step = np.abs(np.diff(light, axis=axis)) > MAX_STEP * np.abs(light).take(range(light.shape[axis] - 1), axis)
+        step = np.abs(np.diff(light, axis=axis)) > MAX_STEP * np.abs(light).take(
+            range(light.shape[axis] - 1), axis
+        )
         low, high = [slice(None)] * 2, [slice(None)] * 2
         low[axis], high[axis] = slice(None, -1), slice(1, None)
         result[tuple(low)] |= step
@@ -79,8 +93,10 @@ def judge(texels, limit):
     # A channel without light (an odd colour) has no ratio.
     lit = texels.reference.sum(0) > 1e-3 * texels.reference.sum()
     passed = bool((np.abs(mean[lit] - 1) < limit).all() and far.mean() < 0.01)
-    return passed, (f"texels {len(texels.a):5}  mean ratio {mean[0]:.5f} {mean[1]:.5f} {mean[2]:.5f}  "
-                    f"median |d| {np.median(relative):.5f}  p99 |d| {np.percentile(relative, 99):.5f}  outside {far.mean():.4f}")
+    return passed, (
+        f"texels {len(texels.a):5}  mean ratio {mean[0]:.5f} {mean[1]:.5f} {mean[2]:.5f}  "
+        f"median |d| {np.median(relative):.5f}  p99 |d| {np.percentile(relative, 99):.5f}  outside {far.mean():.4f}"
+    )
 
 
 def run_case(name, folder, limit):
@@ -96,7 +112,9 @@ def run_case(name, folder, limit):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument('--cases', nargs='*', help="default: all")
     parser.add_argument('--keep', help="folder to keep the files in")
     parser.add_argument('--limit', type=float, default=0.005)

@@ -92,18 +92,25 @@ def compare(preview, original):
     limit = np.percentile(original @ LUMINANCE, 99)
     clip = lambda picture: np.minimum(picture, limit)  # noqa: E731
     ratio = lambda a, b: (a.mean((0, 1)) / np.maximum(b.mean((0, 1)), 1e-9)).tolist()  # noqa: E731
-    return {'ratio_rgb': ratio(preview, original), 'ratio_rgb_clipped': ratio(clip(preview), clip(original)),
-            'ratio_luminance_clipped': float((clip(preview) @ LUMINANCE).mean() / (clip(original) @ LUMINANCE).mean()),
-            'median_ratio': float(np.median(preview @ LUMINANCE) / max(np.median(original @ LUMINANCE), 1e-9)),
-            'blocks': block_ratios(preview, original)}
+    return {
+        'ratio_rgb': ratio(preview, original),
+        'ratio_rgb_clipped': ratio(clip(preview), clip(original)),
+        'ratio_luminance_clipped': float(
+            (clip(preview) @ LUMINANCE).mean() / (clip(original) @ LUMINANCE).mean()
+        ),
+        'median_ratio': float(np.median(preview @ LUMINANCE) / max(np.median(original @ LUMINANCE), 1e-9)),
+        'blocks': block_ratios(preview, original),
+    }
 
 
 def block_ratios(preview, original, size=30):
     """5th, 50th and 95th percentile of the luminance ratio of blocks: local disagreement."""
     height, width = (n // size * size for n in preview.shape[:2])
+
     def means(picture):
         cut = (picture @ LUMINANCE)[:height, :width]
         return cut.reshape(height // size, size, width // size, size).mean((1, 3))
+
     a, b = means(preview), means(original)
     lit = b > 0.02 * b.mean()
     return np.percentile(a[lit] / b[lit], [5, 50, 95]).tolist()
@@ -114,7 +121,7 @@ def save_pair(path, preview, original, exposure):
     if exposure is None:
         exposure = math.log2(0.35 / max(np.percentile(original @ LUMINANCE, 70), 1e-6))
     gap = np.ones((preview.shape[0], 4, 3))
-    pair = [png.srgb(preview * 2 ** exposure), gap, png.srgb(original * 2 ** exposure)]
+    pair = [png.srgb(preview * 2**exposure), gap, png.srgb(original * 2**exposure)]
     png.write_png(path, np.concatenate(pair, axis=1))
     return exposure
 
@@ -142,7 +149,9 @@ def main():
     for number, (preview, original) in enumerate(zip(previews, originals)):
         row = compare(preview, original)
         row['camera'] = [round(v, 4) for v in (*views[number][0], *views[number][1])]
-        row['exposure'] = save_pair(os.path.join(args.out, f"view_{number}.png"), preview, original, args.exposure)
+        row['exposure'] = save_pair(
+            os.path.join(args.out, f"view_{number}.png"), preview, original, args.exposure
+        )
         report.append(row)
         print(f"view {number}: " + json.dumps(row), flush=True)
     with open(os.path.join(args.out, "views.json"), 'w', encoding='utf-8') as file:

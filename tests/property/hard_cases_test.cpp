@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Input that real levels contain and bakers fail on, each with a number (algorithms.md 12.8).
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <numbers>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -20,11 +20,14 @@ struct SkyScene {
     kit::Scene scene;
     uint32_t white = scene.diffuse({0.8f, 0.8f, 0.8f});
     SkyScene() { scene.sky({1, 1, 1}); }
-    void add(const kit::MeshData& mesh, uint32_t page, const char* name) { scene.instance(scene.mesh(mesh), white, page, name); }
+    void add(const kit::MeshData& mesh, uint32_t page, const char* name) {
+        scene.instance(scene.mesh(mesh), white, page, name);
+    }
 };
 
 void expect_finite_layers(const kit::Bake& bake, uint32_t page = 0) {
-    for (uint32_t layer : {AJAR_LAYER_IRRADIANCE, AJAR_LAYER_STDERR, AJAR_LAYER_SAMPLES, AJAR_LAYER_VALIDITY, AJAR_LAYER_ALBEDO})
+    for (uint32_t layer :
+         {AJAR_LAYER_IRRADIANCE, AJAR_LAYER_STDERR, AJAR_LAYER_SAMPLES, AJAR_LAYER_VALIDITY, AJAR_LAYER_ALBEDO})
         EXPECT_TRUE(kit::all_finite(bake.layer(layer, page))) << layer;
     for (float v : bake.layer(AJAR_LAYER_IRRADIANCE, page).data) EXPECT_GE(v, 0.0f);
 }
@@ -57,7 +60,8 @@ TEST(HardMesh, NanVertexIsNamedAndTheOtherTriangleIsRight) {
     EXPECT_TRUE(kit::has_warning(kit::scene_warnings(s.scene), "torn floor", "not finite"));
     const kit::Bake bake(s.scene, kit::settings(0, 1024));
     expect_finite_layers(bake);
-    const kit::Layer validity = bake.layer(AJAR_LAYER_VALIDITY), roof = bake.layer(AJAR_LAYER_IRRADIANCE, 1), floor = bake.layer(AJAR_LAYER_IRRADIANCE);
+    const kit::Layer validity = bake.layer(AJAR_LAYER_VALIDITY), roof = bake.layer(AJAR_LAYER_IRRADIANCE, 1),
+                     floor = bake.layer(AJAR_LAYER_IRRADIANCE);
     EXPECT_NEAR(roof.at(8, 8), pi, 1e-3);
     EXPECT_EQ(validity.at(12, 3), 1.0f);
     EXPECT_EQ(validity.at(3, 12), 0.0f);
@@ -92,7 +96,8 @@ TEST(HardMesh, TrianglesWithoutAreaAreNamedAndLeftOut) {
     SkyScene s;
     kit::MeshData plane = kit::plane(2.0f, 0.0f);
     plane.corners.insert(plane.corners.end(), {0, 0, 0, 0, 1, 1});
-    plane.uv.insert(plane.uv.end(), {{0.1f, 0.1f}, {0.9f, 0.1f}, {0.5f, 0.9f}, {0.1f, 0.1f}, {0.9f, 0.1f}, {0.5f, 0.9f}});
+    plane.uv.insert(plane.uv.end(),
+                    {{0.1f, 0.1f}, {0.9f, 0.1f}, {0.5f, 0.9f}, {0.1f, 0.1f}, {0.9f, 0.1f}, {0.5f, 0.9f}});
     s.add(plane, s.scene.page(16, 16), "floor");
     s.scene.commit();
     EXPECT_TRUE(kit::has_warning(kit::scene_warnings(s.scene), "floor", "2 triangles have no area"));
@@ -121,7 +126,8 @@ TEST(HardMesh, EmptyMeshIsNamedAndHarmless) {
 
 TEST(HardMesh, EveryObjectWithoutMaterialIsNamedAndBlack) {
     SkyScene s;
-    const uint32_t page = s.scene.page(16, 16), mesh = s.scene.mesh(kit::plane(2.0f, 0.0f)), lid = s.scene.mesh(kit::plane(2.0f, -1.0f));
+    const uint32_t page = s.scene.page(16, 16), mesh = s.scene.mesh(kit::plane(2.0f, 0.0f)),
+                   lid = s.scene.mesh(kit::plane(2.0f, -1.0f));
     ajar_instance_desc d;
     ajar_instance_desc_init(&d);
     uint32_t id;
@@ -240,7 +246,8 @@ TEST(HardUv, AChartInsideOneTexelIsLit) {
     const kit::Bake bake(s.scene, kit::settings(1));
     EXPECT_EQ(bake.layer(AJAR_LAYER_VALIDITY).at(5, 5), 1.0f);
     for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx) EXPECT_NEAR(bake.layer(AJAR_LAYER_IRRADIANCE).at(5 + dx, 5 + dy), pi, 1e-3) << dx << dy;
+        for (int dx = -1; dx <= 1; ++dx)
+            EXPECT_NEAR(bake.layer(AJAR_LAYER_IRRADIANCE).at(5 + dx, 5 + dy), pi, 1e-3) << dx << dy;
     EXPECT_EQ(bake.layer(AJAR_LAYER_VALIDITY).at(12, 12), 0.0f);
 }
 
@@ -248,8 +255,10 @@ TEST(HardUv, AChartInsideOneTexelIsLit) {
 
 TEST(HardLight, ValuesThatAreNotFiniteAreRefusedByName) {
     kit::Scene scene;
-    float ajar_light_desc::*const fields[] = {&ajar_light_desc::energy,    &ajar_light_desc::radius, &ajar_light_desc::spot_angle, &ajar_light_desc::spot_blend,
-                                              &ajar_light_desc::sun_angle, &ajar_light_desc::size_x, &ajar_light_desc::size_y,     &ajar_light_desc::spread};
+    float ajar_light_desc::*const fields[] = {&ajar_light_desc::energy,     &ajar_light_desc::radius,
+                                              &ajar_light_desc::spot_angle, &ajar_light_desc::spot_blend,
+                                              &ajar_light_desc::sun_angle,  &ajar_light_desc::size_x,
+                                              &ajar_light_desc::size_y,     &ajar_light_desc::spread};
     uint32_t id;
     for (float bad : {kNan, kInf, -kInf}) {
         for (auto field : fields) {
@@ -280,7 +289,8 @@ TEST(HardLight, PowerZeroOrLessGivesExactlyNothing) {
 }
 
 TEST(HardLight, SizesOfZeroAreFinite) {
-    for (uint32_t type : {AJAR_LIGHT_POINT, AJAR_LIGHT_SPOT, AJAR_LIGHT_SUN, AJAR_LIGHT_AREA_RECTANGLE, AJAR_LIGHT_AREA_ELLIPSE}) {
+    for (uint32_t type :
+         {AJAR_LIGHT_POINT, AJAR_LIGHT_SPOT, AJAR_LIGHT_SUN, AJAR_LIGHT_AREA_RECTANGLE, AJAR_LIGHT_AREA_ELLIPSE}) {
         kit::Scene scene;
         scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({1, 1, 1}), scene.page(8, 8));
         ajar_light_desc d = lamp(type, "tiny");
@@ -359,7 +369,8 @@ TEST(HardRoom, BlackWithoutLight) {
 
 TEST(HardRoom, AlbedoOneIsClampedAndFinite) {
     kit::Scene scene;
-    scene.instance(scene.mesh(kit::box({0, 0, 0}, {2, 2, 2}, true)), scene.emitter({1, 1, 1}, {1, 1, 1}), scene.page(32, 32), "mirror room");
+    scene.instance(scene.mesh(kit::box({0, 0, 0}, {2, 2, 2}, true)), scene.emitter({1, 1, 1}, {1, 1, 1}),
+                   scene.page(32, 32), "mirror room");
     scene.commit();
     constexpr uint32_t kBounces = 64;
     const kit::Bake bake(scene, kit::settings(kBounces, 64));
@@ -398,7 +409,8 @@ TEST(HardRoom, FiveMillimetrePartitionInsideOneRoom) {
     const uint32_t page = scene.page(40, 20);
     scene.instance(scene.mesh(floor), white, page, "floor");
     scene.instance(scene.mesh(shell), white, AJAR_NONE, "shell");
-    scene.instance(scene.mesh(kit::box({0.0475f, -1, -0.01f}, {0.0525f, 1, 2}, false)), white, AJAR_NONE, "partition"); // ends flush with the shell
+    scene.instance(scene.mesh(kit::box({0.0475f, -1, -0.01f}, {0.0525f, 1, 2}, false)), white, AJAR_NONE,
+                   "partition"); // ends flush with the shell
     scene.point_light({-1, 0, 1.5f}, 1000.0f, 0.1f);
     scene.commit();
     const kit::Layer e = kit::Bake(scene, kit::settings(3, 512)).layer(AJAR_LAYER_IRRADIANCE);
@@ -411,7 +423,8 @@ TEST(HardRoom, TexelHalfUnderABoxKeepsTheLightOfItsVisibleHalf) {
     SkyScene s;
     constexpr uint32_t kSize = 32; // texels of 0.125 m; the box covers x in [-0.5625, 0.5625]: half texels
     s.add(kit::plane(4.0f, 0.0f), s.scene.page(kSize, kSize), "floor");
-    s.scene.instance(s.scene.mesh(kit::box({-0.5625f, -0.5625f, 0}, {0.5625f, 0.5625f, 0.3f}, false)), s.scene.diffuse({0, 0, 0}), AJAR_NONE, "crate");
+    s.scene.instance(s.scene.mesh(kit::box({-0.5625f, -0.5625f, 0}, {0.5625f, 0.5625f, 0.3f}, false)),
+                     s.scene.diffuse({0, 0, 0}), AJAR_NONE, "crate");
     s.scene.commit();
     const kit::Bake bake(s.scene, kit::settings(0, 1024));
     const kit::Layer e = bake.layer(AJAR_LAYER_IRRADIANCE), validity = bake.layer(AJAR_LAYER_VALIDITY);
@@ -438,7 +451,8 @@ TEST(HardRoom, AMillionToOneBetweenNeighbouringRooms) {
     }
     scene.commit();
     const kit::Bake bake(scene, kit::settings(2, 256));
-    const double bright = kit::mean(bake.layer(AJAR_LAYER_IRRADIANCE, page[0])), dim = kit::mean(bake.layer(AJAR_LAYER_IRRADIANCE, page[1]));
+    const double bright = kit::mean(bake.layer(AJAR_LAYER_IRRADIANCE, page[0])),
+                 dim = kit::mean(bake.layer(AJAR_LAYER_IRRADIANCE, page[1]));
     EXPECT_NEAR(dim / bright * 1e6, 1.0, 0.05);
 }
 
@@ -447,16 +461,20 @@ TEST(HardRoom, AMillionToOneBetweenNeighbouringRooms) {
 TEST(HardScale, TooWideASceneIsRefusedNamingTheFarObject) {
     SkyScene s;
     s.add(kit::plane(2.0f, 0.0f), s.scene.page(8, 8), "floor");
-    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "lost satellite", kit::translation(1e5, 0, 0).data());
+    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "lost satellite",
+                     kit::translation(1e5, 0, 0).data());
     EXPECT_EQ(ajar_scene_commit(s.scene.handle()), AJAR_ERROR_INPUT);
     EXPECT_STREQ(ajar_error_culprit(), "lost satellite");
 }
 
 TEST(HardScale, OneStrayVertexFarFromALevelAtThousandsOfMetresIsNamed) {
     SkyScene s; // the level lies further from zero than the stray object does from the level
-    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, s.scene.page(8, 8), "level", kit::translation(2e5, 0, 0).data());
-    s.scene.instance(s.scene.mesh(kit::plane(3.0f, 0.0f)), s.white, AJAR_NONE, "level too", kit::translation(2e5 + 4, 0, 0).data());
-    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "stray", kit::translation(1e5, 0, 0).data());
+    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, s.scene.page(8, 8), "level",
+                     kit::translation(2e5, 0, 0).data());
+    s.scene.instance(s.scene.mesh(kit::plane(3.0f, 0.0f)), s.white, AJAR_NONE, "level too",
+                     kit::translation(2e5 + 4, 0, 0).data());
+    s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "stray",
+                     kit::translation(1e5, 0, 0).data());
     EXPECT_EQ(ajar_scene_commit(s.scene.handle()), AJAR_ERROR_INPUT);
     EXPECT_STREQ(ajar_error_culprit(), "stray");
 }
@@ -465,7 +483,8 @@ TEST(HardScale, OverflowingTransformsAreRefusedOrLeftOut) {
     for (double huge : {1e30, 1e200, 1e308}) {
         SkyScene s;
         s.add(kit::plane(2.0f, 0.0f), s.scene.page(8, 8), "floor");
-        s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "monster", std::array<double, 12>{huge, 0, 0, 0, 0, huge, 0, 0, 0, 0, huge, 0}.data());
+        s.scene.instance(s.scene.mesh(kit::plane(2.0f, 0.0f)), s.white, AJAR_NONE, "monster",
+                         std::array<double, 12>{huge, 0, 0, 0, 0, huge, 0, 0, 0, 0, huge, 0}.data());
         EXPECT_EQ(ajar_scene_commit(s.scene.handle()), AJAR_ERROR_INPUT) << huge;
         EXPECT_STREQ(ajar_error_culprit(), "monster");
     }

@@ -2,14 +2,14 @@
 // What must not change when the scene is moved, scaled, turned, mirrored or lit in parts
 // (algorithms.md 12.7). Transforms keep the random numbers, so most comparisons are nearly exact;
 // where they do not, the bake's own standard error is the measure.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -24,13 +24,16 @@ Result bake(const kit::Scene& scene, const ajar_settings& settings, uint32_t pag
     return {b.layer(AJAR_LAYER_IRRADIANCE, page), b.layer(AJAR_LAYER_STDERR, page), b.layer(AJAR_LAYER_VALIDITY, page)};
 }
 
-double lum(const kit::Layer& e, size_t texel) { return 0.2126 * e.data[3 * texel] + 0.7152 * e.data[3 * texel + 1] + 0.0722 * e.data[3 * texel + 2]; }
+double lum(const kit::Layer& e, size_t texel) {
+    return 0.2126 * e.data[3 * texel] + 0.7152 * e.data[3 * texel + 1] + 0.0722 * e.data[3 * texel + 2];
+}
 
 /// Largest relative difference that the share best of the valid texels stays below.
 double difference(const Result& a, const Result& b, double share, double factor = 1.0) {
     std::vector<double> all;
     for (size_t i = 0; i < a.validity.data.size(); ++i)
-        if (a.validity.data[i] == 1.0f) all.push_back(std::abs(lum(b.e, i) * factor / std::max(lum(a.e, i), 1e-30) - 1.0));
+        if (a.validity.data[i] == 1.0f)
+            all.push_back(std::abs(lum(b.e, i) * factor / std::max(lum(a.e, i), 1e-30) - 1.0));
     std::sort(all.begin(), all.end());
     EXPECT_GT(all.size(), 50u);
     return all.empty() ? 1e9 : all[static_cast<size_t>(share * static_cast<double>(all.size() - 1))];
@@ -98,8 +101,10 @@ void add_lamp(kit::Scene& scene, const Placement& p, double x, double y, double 
 Result placed_room(const Placement& p) {
     kit::Scene scene;
     const uint32_t grey = scene.diffuse({0.5f, 0.6f, 0.4f}), page = scene.page(48, 48);
-    scene.instance(scene.mesh(scaled(kit::box({-2, -2, 0}, {2, 2, 3}, true), p.scale)), grey, page, "room", p.matrix.data());
-    scene.instance(scene.mesh(scaled(kit::box({-0.7f, -0.4f, 0.3f}, {0.5f, 0.5f, 1.0f}, false)  , p.scale)), scene.diffuse({0, 0, 0}), AJAR_NONE, "box", p.matrix.data());
+    scene.instance(scene.mesh(scaled(kit::box({-2, -2, 0}, {2, 2, 3}, true), p.scale)), grey, page, "room",
+                   p.matrix.data());
+    scene.instance(scene.mesh(scaled(kit::box({-0.7f, -0.4f, 0.3f}, {0.5f, 0.5f, 1.0f}, false), p.scale)),
+                   scene.diffuse({0, 0, 0}), AJAR_NONE, "box", p.matrix.data());
     add_lamp(scene, p, 1.0, 0.5, 2.5, 60.0, AJAR_ROLE_STATIC);
     add_lamp(scene, p, -1.2, -1.0, 1.5, 20.0, AJAR_ROLE_PRIMARY);
     scene.commit();
@@ -118,7 +123,9 @@ const Result& room_at_origin() {
 Matrix rotation(double angle, double x, double y, double z) { // Rodrigues' formula
     const double l = std::sqrt(x * x + y * y + z * z), c = std::cos(angle), s = std::sin(angle), t = 1 - c;
     x /= l, y /= l, z /= l;
-    return {t * x * x + c, t * x * y - s * z, t * x * z + s * y, 0, t * x * y + s * z, t * y * y + c, t * y * z - s * x, 0, t * x * z - s * y, t * y * z + s * x, t * z * z + c, 0};
+    return {t * x * x + c,     t * x * y - s * z, t * x * z + s * y, 0,
+            t * x * y + s * z, t * y * y + c,     t * y * z - s * x, 0,
+            t * x * z - s * y, t * y * z + s * x, t * z * z + c,     0};
 }
 
 TEST(Invariance, ScaleTimes1000) {
@@ -168,9 +175,11 @@ TEST(Invariance, NonUniformScaleOfTheInstanceEqualsTheScaledMesh) {
         kit::MeshData ramp;
         const float k = by_instance ? 1.0f : 3.0f;
         ramp.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, k}, {-1, 1, k}, {0, 0}, {1, 1});
-        ramp.normals.assign(6, by_instance ? kit::Float3{0, -0.4472136f, 0.8944272f} : kit::Float3{0, -0.8320503f, 0.5547002f});
+        ramp.normals.assign(
+            6, by_instance ? kit::Float3{0, -0.4472136f, 0.8944272f} : kit::Float3{0, -0.8320503f, 0.5547002f});
         const Matrix tall = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 3, 0};
-        scene.instance(scene.mesh(ramp), scene.diffuse({1, 1, 1}), scene.page(12, 12), "ramp", by_instance ? tall.data() : nullptr);
+        scene.instance(scene.mesh(ramp), scene.diffuse({1, 1, 1}), scene.page(12, 12), "ramp",
+                       by_instance ? tall.data() : nullptr);
         ajar_light_desc d;
         ajar_light_desc_init(&d);
         d.type = AJAR_LIGHT_SUN;
@@ -196,8 +205,12 @@ Result lit_by(int parts, uint32_t seed) {
     room.uv.erase(room.uv.begin() + 6, room.uv.begin() + 9);
     scene.instance(scene.mesh(room), grey, page, "room");
     if (parts & kLampA) scene.point_light({1, 0.5f, 2.0f}, 60.0f, 0.2f);
-    if (parts & kLampB) scene.instance(scene.mesh(kit::box({-1, -1, 1}, {-0.8f, -0.6f, 1.1f}, false)), scene.emitter({20, 15, 9}), AJAR_NONE, "bulb");
-    else scene.instance(scene.mesh(kit::box({-1, -1, 1}, {-0.8f, -0.6f, 1.1f}, false)), scene.diffuse({0, 0, 0}), AJAR_NONE, "bulb");
+    if (parts & kLampB)
+        scene.instance(scene.mesh(kit::box({-1, -1, 1}, {-0.8f, -0.6f, 1.1f}, false)), scene.emitter({20, 15, 9}),
+                       AJAR_NONE, "bulb");
+    else
+        scene.instance(scene.mesh(kit::box({-1, -1, 1}, {-0.8f, -0.6f, 1.1f}, false)), scene.diffuse({0, 0, 0}),
+                       AJAR_NONE, "bulb");
     if (parts & kSky) scene.sky({0.6f, 0.8f, 1.0f});
     scene.commit();
     ajar_settings s = kit::settings(3, 256);
@@ -209,7 +222,9 @@ TEST(Linearity, LampsMeshLightAndSkyAddUp) {
     const Result all = lit_by(kLampA | kLampB | kSky, 1);
     const Result parts[] = {lit_by(kLampA, 2), lit_by(kLampB, 3), lit_by(kSky, 4)};
     const auto sum = [&](size_t i) { return lum(parts[0].e, i) + lum(parts[1].e, i) + lum(parts[2].e, i); };
-    const auto error = [&](size_t i) { return std::hypot(parts[0].se.data[i], parts[1].se.data[i], parts[2].se.data[i]); };
+    const auto error = [&](size_t i) {
+        return std::hypot(parts[0].se.data[i], parts[1].se.data[i], parts[2].se.data[i]);
+    };
     EXPECT_LT(rms_z(all, sum, error), 1.6);
     double mean = 0.0, bound = mean_error(all);
     for (const Result& p : parts) mean += valid_mean(p), bound = std::hypot(bound, mean_error(p));
@@ -219,7 +234,8 @@ TEST(Linearity, LampsMeshLightAndSkyAddUp) {
 
 TEST(Linearity, SeedsChangeTheNoiseNotTheMean) {
     const Result a = lit_by(kLampA | kLampB | kSky, 11), b = lit_by(kLampA | kLampB | kSky, 12);
-    const double z = rms_z(a, [&](size_t i) { return lum(b.e, i); }, [&](size_t i) { return double(b.se.data[i]); });
+    const double z = rms_z(
+        a, [&](size_t i) { return lum(b.e, i); }, [&](size_t i) { return double(b.se.data[i]); });
     EXPECT_LT(z, 1.6);
     EXPECT_GT(z, 0.4) << "the standard error is overstated, or the seed has no effect";
     EXPECT_NEAR(valid_mean(a), valid_mean(b), 4.0 * std::hypot(mean_error(a), mean_error(b)) + 0.003 * valid_mean(a));
@@ -250,7 +266,8 @@ TEST(Transparency, TintedPanesMultiplyDirectLight) {
         kit::Scene scene;
         scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({0.5f, 0.5f, 0.5f}), scene.page(8, 8));
         const uint32_t glass = scene.material({closure(AJAR_CLOSURE_TRANSPARENT, {0.5f, 0.25f, 0.0f})});
-        for (int i = 0; i < panes; ++i) scene.instance(scene.mesh(kit::plane(9.0f, 0.5f + 0.1f * static_cast<float>(i))), glass, AJAR_NONE, "pane");
+        for (int i = 0; i < panes; ++i)
+            scene.instance(scene.mesh(kit::plane(9.0f, 0.5f + 0.1f * static_cast<float>(i))), glass, AJAR_NONE, "pane");
         scene.point_light({0, 0, 2}, 50.0f);
         scene.commit();
         return bake(scene, kit::settings(1)).e;
@@ -268,7 +285,8 @@ TEST(Transparency, TheSkyThroughATintedPane) {
     kit::Scene scene;
     scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({0, 0, 0}), scene.page(8, 8));
     kit::MeshData dome = kit::box({-5, -5, -1}, {5, 5, 5}, true);
-    scene.instance(scene.mesh(dome), scene.material({closure(AJAR_CLOSURE_TRANSPARENT, {0.5f, 0.25f, 1.0f})}), AJAR_NONE, "dome");
+    scene.instance(scene.mesh(dome), scene.material({closure(AJAR_CLOSURE_TRANSPARENT, {0.5f, 0.25f, 1.0f})}),
+                   AJAR_NONE, "dome");
     scene.sky({1, 1, 1});
     scene.commit();
     const kit::Layer e = bake(scene, kit::settings(2)).e;
@@ -289,7 +307,8 @@ uint32_t cutout(kit::Scene& scene, const std::vector<float>& rgba, uint32_t size
     t.texel_bytes = rgba.size() * sizeof(float);
     uint32_t texture = 0;
     kit::check(ajar_scene_add_texture(scene.handle(), &t, &texture));
-    ajar_closure leaf = closure(AJAR_CLOSURE_DIFFUSE, {0.1f, 0.4f, 0.1f}), hole = closure(AJAR_CLOSURE_TRANSPARENT, {1, 1, 1});
+    ajar_closure leaf = closure(AJAR_CLOSURE_DIFFUSE, {0.1f, 0.4f, 0.1f}),
+                 hole = closure(AJAR_CLOSURE_TRANSPARENT, {1, 1, 1});
     leaf.weight_a.texture = hole.weight_a.texture = texture;
     leaf.weight_a.channel = hole.weight_a.channel = AJAR_CHANNEL_A;
     hole.weight_a.invert = 1;
@@ -299,7 +318,8 @@ uint32_t cutout(kit::Scene& scene, const std::vector<float>& rgba, uint32_t size
 TEST(Transparency, CutoutsPassLightExactly) {
     kit::Scene scene;
     scene.instance(scene.mesh(kit::plane(4.0f, 0.0f)), scene.diffuse({0, 0, 0}), scene.page(16, 16));
-    const uint32_t leaf = cutout(scene, {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, 2); // holes at right bottom and left top
+    const uint32_t leaf =
+        cutout(scene, {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, 2); // holes at right bottom and left top
     scene.instance(scene.mesh(kit::plane(4.0f, 1.0f)), leaf, AJAR_NONE, "leaf");
     add_sun(scene, 3.0f);
     scene.commit();
@@ -315,7 +335,8 @@ TEST(Transparency, CutoutsPassLightExactly) {
 double glow_on_floor(bool front_up, bool one_sided) {
     kit::Scene scene;
     scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({0, 0, 0}), scene.page(8, 8));
-    scene.instance(scene.mesh(kit::plane(1.0f, 1.0f, front_up)), scene.emitter({4, 4, 4}, {0, 0, 0}, one_sided), AJAR_NONE, "panel");
+    scene.instance(scene.mesh(kit::plane(1.0f, 1.0f, front_up)), scene.emitter({4, 4, 4}, {0, 0, 0}, one_sided),
+                   AJAR_NONE, "panel");
     scene.commit();
     ajar_settings s = kit::settings(1, 512);
     s.direct_samples = 256;
@@ -347,7 +368,8 @@ TEST(Sides, OccludersBounceAsMuchAsLightmappedSurfaces) {
     EXPECT_GT(mapped, 0.1);
     EXPECT_NEAR(by_way_of_ceiling(false, false, false) / mapped, 1.0, 0.02);
     EXPECT_NEAR(by_way_of_ceiling(false, true, false) / mapped, 1.0, 0.02) << "the back of a two-sided occluder";
-    EXPECT_NEAR(by_way_of_ceiling(true, true, false) / mapped, 1.0, 0.02) << "the back of a two-sided lightmapped surface";
+    EXPECT_NEAR(by_way_of_ceiling(true, true, false) / mapped, 1.0, 0.02)
+        << "the back of a two-sided lightmapped surface";
 }
 
 TEST(Sides, BacksOfOneSidedSurfacesReflectNothing) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The promise of terms: for every state of light sets, doors and toggles, base + sum of terms is
 // the bake of that state.
-#include "room_kit.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
+
+#include "room_kit.h"
 
 namespace {
 
@@ -22,8 +22,8 @@ struct State {
 };
 
 struct Options {
-    bool pose = false;         ///< the door has an open pose
-    bool black_door = false;   ///< the closed leaf reflects nothing
+    bool pose = false;             ///< the door has an open pose
+    bool black_door = false;       ///< the closed leaf reflects nothing
     const State* frozen = nullptr; ///< build this state without elements; null: build the elements
 };
 
@@ -34,14 +34,20 @@ public:
     explicit Rooms(const Options& o) : o_(o) {
         white_ = scene.diffuse({0.7f, 0.65f, 0.6f});
         if (o.frozen == nullptr)
-            for (const auto& [kind, name] : {std::pair{AJAR_ELEMENT_LIGHT_SET, "a"}, {AJAR_ELEMENT_LIGHT_SET, "b"}, {AJAR_ELEMENT_LIGHT_SET, "sign"}, {AJAR_ELEMENT_DOOR, "door"}, {AJAR_ELEMENT_TOGGLE, "crate"}, {AJAR_ELEMENT_TOGGLE, "ball"}})
+            for (const auto& [kind, name] : {std::pair{AJAR_ELEMENT_LIGHT_SET, "a"},
+                                             {AJAR_ELEMENT_LIGHT_SET, "b"},
+                                             {AJAR_ELEMENT_LIGHT_SET, "sign"},
+                                             {AJAR_ELEMENT_DOOR, "door"},
+                                             {AJAR_ELEMENT_TOGGLE, "crate"},
+                                             {AJAR_ELEMENT_TOGGLE, "ball"}})
                 scene.element(kind, name, !o.black_door);
         add(kit::box({-4, -2, 0}, {4, 2, 3}, true), white_);
         add(kit::box({-0.1f, -2, -0.1f}, {0.1f, -0.5f, 3.1f}, false), white_);
         add(kit::box({-0.1f, 0.5f, -0.1f}, {0.1f, 2, 3.1f}, false), white_);
         add(kit::box({-0.1f, -0.5f, 2}, {0.1f, 0.5f, 3.1f}, false), white_);
         const uint32_t red = scene.diffuse({0.8f, 0.2f, 0.1f});
-        part(kDoor, false, kit::box({-0.05f, -0.47f, 0.03f}, {0.05f, 0.47f, 1.97f}, false), o.black_door && o.frozen != nullptr ? scene.diffuse({0, 0, 0}) : red);
+        part(kDoor, false, kit::box({-0.05f, -0.47f, 0.03f}, {0.05f, 0.47f, 1.97f}, false),
+             o.black_door && o.frozen != nullptr ? scene.diffuse({0, 0, 0}) : red);
         if (o.pose) part(kDoor, true, kit::box({0.15f, 0.55f, 0.03f}, {1.1f, 0.65f, 1.97f}, false), red);
         part(kCrate, false, kit::box({1.5f, -0.5f, 0}, {2.2f, 0.3f, 0.9f}, false), scene.diffuse({0.1f, 0.7f, 0.2f}));
         part(kBall, false, kit::box({1.6f, -0.2f, 0.9f}, {2.1f, 0.2f, 1.4f}, false), scene.diffuse({0.2f, 0.2f, 0.8f}));
@@ -68,8 +74,10 @@ private:
         if (element == kCrate || element == kBall) touching.push_back(static_cast<uint32_t>(pages.size()));
         if (o_.frozen != nullptr) {
             // Its page stays, so that pages of all scenes match.
-            if (o_.frozen->there(element) == when) add(data, material);
-            else pages.push_back(scene.page(kSize, kSize));
+            if (o_.frozen->there(element) == when)
+                add(data, material);
+            else
+                pages.push_back(scene.page(kSize, kSize));
             return;
         }
         scene.current_switch = element;
@@ -80,7 +88,8 @@ private:
     }
     void lamp(uint32_t element, kit::Float3 at, float watts) {
         if (o_.frozen == nullptr) scene.current_set = element;
-        scene.point_light(at, o_.frozen != nullptr ? watts * o_.frozen->weight[element] : watts, 0.05f, element == kLampB);
+        scene.point_light(at, o_.frozen != nullptr ? watts * o_.frozen->weight[element] : watts, 0.05f,
+                          element == kLampB);
         scene.current_set = AJAR_NONE;
     }
     void sign() {
@@ -145,9 +154,11 @@ Agreement compare(const Options& options, const State& state) {
     double total = 0.0, expected = 0.0, squares = 0.0, count = 0.0;
     size_t next = 0;
     for (const uint32_t page : other.pages) {
-        const kit::Layer e = whole.layer(AJAR_LAYER_IRRADIANCE, page), validity = whole.layer(AJAR_LAYER_VALIDITY, page);
+        const kit::Layer e = whole.layer(AJAR_LAYER_IRRADIANCE, page),
+                         validity = whole.layer(AJAR_LAYER_VALIDITY, page);
         for (size_t i = 0; i < e.data.size(); ++i, ++next) {
-            if (validity.data[i / 3] != 1.0f || std::count(other.touching.begin(), other.touching.end(), page) != 0) continue;
+            if (validity.data[i / 3] != 1.0f || std::count(other.touching.begin(), other.touching.end(), page) != 0)
+                continue;
             total += sum[next];
             expected += e.data[i];
             squares += (sum[next] - e.data[i]) * (sum[next] - e.data[i]);
@@ -160,7 +171,8 @@ Agreement compare(const Options& options, const State& state) {
 TEST(Terms, BasePlusTermsIsTheBakeOfAState) {
     // One process for all states: each option's terms are baked once.
     for (const int i : {0, 1, 7, 9, 23, 24, 39, 47, 59, 63}) {
-        const State state{{i & 1 ? 0.7f : 0.0f, i & 2 ? 1.5f : 0.2f, i & 4 ? 2.0f : 0.0f, i & 8 ? 1.0f : 0.0f, i & 16 ? 1.0f : 0.0f, i & 32 ? 1.0f : 0.0f}};
+        const State state{{i & 1 ? 0.7f : 0.0f, i & 2 ? 1.5f : 0.2f, i & 4 ? 2.0f : 0.0f, i & 8 ? 1.0f : 0.0f,
+                           i & 16 ? 1.0f : 0.0f, i & 32 ? 1.0f : 0.0f}};
         for (const bool pose : {false, true}) {
             Options o;
             o.pose = pose;

@@ -94,7 +94,8 @@ TempFolder::~TempFolder() {
 
 std::vector<std::string> TempFolder::entries() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(path_)) names.push_back(fs::relative(entry.path(), path_).string());
+    for (const auto& entry : fs::recursive_directory_iterator(path_))
+        names.push_back(fs::relative(entry.path(), path_).string());
     std::sort(names.begin(), names.end());
     return names;
 }

@@ -7,7 +7,9 @@
 namespace kit {
 
 void check(ajar_result result) {
-    if (result != AJAR_OK) throw std::runtime_error(std::string(ajar_result_text(result)) + ": " + ajar_error_message() + " (" + ajar_error_culprit() + ")");
+    if (result != AJAR_OK)
+        throw std::runtime_error(std::string(ajar_result_text(result)) + ": " + ajar_error_message() + " (" +
+                                 ajar_error_culprit() + ")");
 }
 
 std::array<double, 12> translation(double x, double y, double z) { return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}; }
@@ -30,8 +32,10 @@ MeshData box(Float3 l, Float3 h, bool inside, float m) {
         const float x = static_cast<float>(f % 3) / 3.0f, y = static_cast<float>(f / 3) / 2.0f;
         const Float2 low = {x + m, y + m}, high = {x + 1.0f / 3.0f - m, y + 0.5f - m};
         const int* q = faces[f];
-        if (inside) mesh.quad(p[q[0]], p[q[1]], p[q[2]], p[q[3]], low, high);
-        else mesh.quad(p[q[0]], p[q[3]], p[q[2]], p[q[1]], low, high);
+        if (inside)
+            mesh.quad(p[q[0]], p[q[1]], p[q[2]], p[q[3]], low, high);
+        else
+            mesh.quad(p[q[0]], p[q[3]], p[q[2]], p[q[1]], low, high);
     }
     return mesh;
 }
@@ -39,8 +43,10 @@ MeshData box(Float3 l, Float3 h, bool inside, float m) {
 MeshData plane(float size, float z, bool up) {
     MeshData mesh;
     const float s = 0.5f * size;
-    if (up) mesh.quad({-s, -s, z}, {s, -s, z}, {s, s, z}, {-s, s, z}, {0, 0}, {1, 1});
-    else mesh.quad({-s, s, z}, {s, s, z}, {s, -s, z}, {-s, -s, z}, {0, 0}, {1, 1});
+    if (up)
+        mesh.quad({-s, -s, z}, {s, -s, z}, {s, s, z}, {-s, s, z}, {0, 0}, {1, 1});
+    else
+        mesh.quad({-s, s, z}, {s, s, z}, {s, -s, z}, {-s, -s, z}, {0, 0}, {1, 1});
     return mesh;
 }
 
@@ -58,7 +64,8 @@ void subdivide(Float3 a, Float3 b, Float3 c, int n, float radius, std::vector<st
         out.push_back({a, b, c});
         return;
     }
-    const Float3 ab = normalized(middle(a, b), radius), bc = normalized(middle(b, c), radius), ca = normalized(middle(c, a), radius);
+    const Float3 ab = normalized(middle(a, b), radius), bc = normalized(middle(b, c), radius),
+                 ca = normalized(middle(c, a), radius);
     subdivide(a, ab, ca, n - 1, radius, out);
     subdivide(ab, b, bc, n - 1, radius, out);
     subdivide(ca, bc, c, n - 1, radius, out);
@@ -71,7 +78,8 @@ MeshData sphere_inside(float radius, int subdivisions) {
     std::vector<std::array<Float3, 3>> triangles;
     const float r = radius;
     const Float3 x{r, 0, 0}, y{0, r, 0}, z{0, 0, r}, nx{-r, 0, 0}, ny{0, -r, 0}, nz{0, 0, -r};
-    const Float3 octants[8][3] = {{x, y, z}, {y, nx, z}, {nx, ny, z}, {ny, x, z}, {y, x, nz}, {nx, y, nz}, {ny, nx, nz}, {x, ny, nz}};
+    const Float3 octants[8][3] = {{x, y, z},  {y, nx, z},  {nx, ny, z},  {ny, x, z},
+                                  {y, x, nz}, {nx, y, nz}, {ny, nx, nz}, {x, ny, nz}};
     for (const auto& o : octants) subdivide(o[0], o[1], o[2], subdivisions, radius, triangles);
     MeshData mesh;
     const auto cells = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(triangles.size()))));
@@ -80,7 +88,8 @@ MeshData sphere_inside(float radius, int subdivisions) {
         const auto base = static_cast<uint32_t>(mesh.positions.size());
         for (const Float3& p : triangles[i]) mesh.positions.push_back(p);
         mesh.corners.insert(mesh.corners.end(), {base, base + 2, base + 1}); // front faces the centre
-        const float u = static_cast<float>(static_cast<int>(i) % cells) * step, v = static_cast<float>(static_cast<int>(i) / cells) * step;
+        const float u = static_cast<float>(static_cast<int>(i) % cells) * step,
+                    v = static_cast<float>(static_cast<int>(i) / cells) * step;
         mesh.uv.insert(mesh.uv.end(), {Float2{u + m, v + m}, Float2{u + step - m, v + m}, Float2{u + m, v + step - m}});
     }
     return mesh;
@@ -156,7 +165,8 @@ uint32_t Scene::mesh(const MeshData& data) {
     return id;
 }
 
-uint32_t Scene::instance(uint32_t mesh, uint32_t material, uint32_t page, const std::string& name, const double* transform) {
+uint32_t Scene::instance(uint32_t mesh, uint32_t material, uint32_t page, const std::string& name,
+                         const double* transform) {
     ajar_instance_desc d;
     ajar_instance_desc_init(&d);
     d.name = name.c_str();

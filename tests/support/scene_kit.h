@@ -3,12 +3,12 @@
 
 // Builds small scenes through the public C ABI, for tests and benchmarks.
 
-#include "ajar/ajar.h"
-
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "ajar/ajar.h"
 
 namespace kit {
 
@@ -47,7 +47,8 @@ public:
     uint32_t page(uint32_t width, uint32_t height);
     uint32_t mesh(const MeshData& data);
     /// Lightmapped on page, or an occluder for page AJAR_NONE.
-    uint32_t instance(uint32_t mesh, uint32_t material, uint32_t page, const std::string& name = "object", const double* transform = nullptr);
+    uint32_t instance(uint32_t mesh, uint32_t material, uint32_t page, const std::string& name = "object",
+                      const double* transform = nullptr);
     uint32_t light(ajar_light_desc desc, const double* transform);
     uint32_t point_light(Float3 position, float watts, float radius = 0.0f, bool primary = false);
     /// kind: AJAR_ELEMENT_*.

@@ -21,6 +21,7 @@ def start(tmp_path):
         script.write_text(HEAD + body)
         clients.append(WorkerClient([], python=sys.executable, worker=script))
         return clients[-1]
+
     yield run
     for client in clients:
         client.close()
@@ -36,8 +37,10 @@ def collect(client, seconds=20):
 
 
 def test_events_in_order(start):
-    client = start("for i in range(500): say(event='progress', fraction=i/500)\n"
-                   "say(event='done', package='p', report='r')")
+    client = start(
+        "for i in range(500): say(event='progress', fraction=i/500)\n"
+        "say(event='done', package='p', report='r')"
+    )
     events = collect(client)
     assert [e["event"] for e in events] == ["progress"] * 500 + ["done"]
     assert client.outcome["package"] == "p" and client.poll() == []
@@ -58,8 +61,10 @@ def test_poll_does_not_wait(start):
 
 
 def test_cancel_reaches_the_worker(start):
-    client = start("say(event='progress', fraction=0)\nline = sys.stdin.readline()\n"
-                   "say(event='cancelled' if line == 'cancel\\n' else 'error', code=0, message=line)\nsys.exit(2)")
+    client = start(
+        "say(event='progress', fraction=0)\nline = sys.stdin.readline()\n"
+        "say(event='cancelled' if line == 'cancel\\n' else 'error', code=0, message=line)\nsys.exit(2)"
+    )
     client.cancel()
     assert collect(client)[-1]["event"] == "cancelled"
 
@@ -77,8 +82,11 @@ def test_crash_keeps_stderr(start):
 
 
 def test_nothing_after_the_final_event(start):
-    events = collect(start("say(event='error', code=-5, message='m', culprit='Cube')\n"
-                           "say(event='progress')\nsys.exit(1)"))
+    events = collect(
+        start(
+            "say(event='error', code=-5, message='m', culprit='Cube')\n" "say(event='progress')\nsys.exit(1)"
+        )
+    )
     assert [e["event"] for e in events] == ["error"]
 
 
@@ -100,7 +108,11 @@ def test_environment_is_clean(monkeypatch):
     monkeypatch.setenv("AJAR_LIBRARY", "/z")
     environment = clean_environment({"MORE": "1"})
     assert "PYTHONPATH" not in environment and "PYTHONHOME" not in environment
-    assert environment["PYTHONNOUSERSITE"] == "1" and environment["AJAR_LIBRARY"] == "/z" and environment["MORE"] == "1"
+    assert (
+        environment["PYTHONNOUSERSITE"] == "1"
+        and environment["AJAR_LIBRARY"] == "/z"
+        and environment["MORE"] == "1"
+    )
 
 
 def test_words():

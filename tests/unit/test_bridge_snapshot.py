@@ -8,7 +8,9 @@ import pytest
 from blender_addon.bridge.snapshot_io import ALIGNMENT, Reader, SnapshotError, Writer, write_text_whole
 
 
-def write(folder, arrays=((array("f", [1.5, -2.0]), "f32"), (array("B", [7]), "u8"), (array("d", [3.25]), "f64"))):
+def write(
+    folder, arrays=((array("f", [1.5, -2.0]), "f32"), (array("B", [7]), "u8"), (array("d", [3.25]), "f64"))
+):
     with Writer(folder) as writer:
         references = [writer.add_bytes(values, kind) for values, kind in arrays]
         writer.finish({"arrays": references})
@@ -32,9 +34,18 @@ def test_empty_arrays(tmp_path):
         assert not reader.values(reference, "u32")
 
 
-@pytest.mark.parametrize("change", [
-    {"count": 3000}, {"offset": 1 << 40}, {"offset": -64}, {"offset": 2}, {"type": "u32"}, {"type": "x"},
-    {"count": -1}])
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"count": 3000},
+        {"offset": 1 << 40},
+        {"offset": -64},
+        {"offset": 2},
+        {"type": "u32"},
+        {"type": "x"},
+        {"count": -1},
+    ],
+)
 def test_bad_reference(tmp_path, change):
     reference = {**write(tmp_path)[0], **change}
     with Reader(tmp_path) as reader, pytest.raises(SnapshotError):
@@ -78,6 +89,7 @@ def test_whole_text(tmp_path):
 def test_numpy_writer(tmp_path):
     np = pytest.importorskip("numpy")
     from blender_addon.bridge.snapshot_write import ArrayWriter
+
     with ArrayWriter(tmp_path) as writer:
         reference = writer.add(np.arange(6, dtype=np.int64).reshape(2, 3).T, "u32")
         assert writer.add(None, "f32") is None

@@ -46,8 +46,8 @@ enum {
     AJAR_ERROR_INPUT = -5,       /* scene data that cannot be baked; see message and culprit */
     AJAR_ERROR_MEMORY = -6,
     AJAR_ERROR_IO = -7,
-    AJAR_ERROR_BUFFER = -8,      /* caller's buffer is too small; the needed size is written back */
-    AJAR_ERROR_CPU = -9,         /* this processor lacks instructions the library was built for */
+    AJAR_ERROR_BUFFER = -8, /* caller's buffer is too small; the needed size is written back */
+    AJAR_ERROR_CPU = -9,    /* this processor lacks instructions the library was built for */
     AJAR_ERROR_INTERNAL = -10
 };
 
@@ -78,10 +78,10 @@ typedef struct ajar_texture_desc {
     uint32_t struct_size;
     const char* name;
     uint32_t width, height;
-    uint32_t texel;      /* AJAR_TEXEL_* */
-    uint32_t color;      /* AJAR_COLOR_*; alpha is always linear */
-    uint32_t extend;     /* AJAR_EXTEND_* */
-    uint32_t nearest;    /* 1: no interpolation */
+    uint32_t texel;   /* AJAR_TEXEL_* */
+    uint32_t color;   /* AJAR_COLOR_*; alpha is always linear */
+    uint32_t extend;  /* AJAR_EXTEND_* */
+    uint32_t nearest; /* 1: no interpolation */
     const void* texels;
     uint64_t texel_bytes; /* size of texels, checked */
 } ajar_texture_desc;
@@ -131,12 +131,12 @@ typedef struct ajar_mesh_desc {
     const char* name;
     uint32_t vertex_count;
     uint32_t triangle_count;
-    const float* positions;         /* [vertex_count][3] */
-    const uint32_t* corner_vertex;  /* [3*triangle_count] */
-    const float* corner_normals;    /* [3*triangle_count][3] unit shading normals, or NULL: flat */
-    const uint32_t* triangle_slot;  /* [triangle_count] material slot, or NULL: all 0 */
+    const float* positions;        /* [vertex_count][3] */
+    const uint32_t* corner_vertex; /* [3*triangle_count] */
+    const float* corner_normals;   /* [3*triangle_count][3] unit shading normals, or NULL: flat */
+    const uint32_t* triangle_slot; /* [triangle_count] material slot, or NULL: all 0 */
     uint32_t uv_layer_count;
-    const float* const* uv_layers;  /* [uv_layer_count] of [3*triangle_count][2] */
+    const float* const* uv_layers; /* [uv_layer_count] of [3*triangle_count][2] */
     uint32_t color_layer_count;
     const float* const* color_layers; /* [color_layer_count] of [3*triangle_count][4], linear */
 } ajar_mesh_desc;
@@ -176,7 +176,13 @@ typedef struct ajar_instance_desc {
     uint32_t light_set; /* light set that its emission belongs to, or AJAR_NONE */
 } ajar_instance_desc;
 
-enum { AJAR_LIGHT_POINT = 0, AJAR_LIGHT_SPOT = 1, AJAR_LIGHT_SUN = 2, AJAR_LIGHT_AREA_RECTANGLE = 3, AJAR_LIGHT_AREA_ELLIPSE = 4 };
+enum {
+    AJAR_LIGHT_POINT = 0,
+    AJAR_LIGHT_SPOT = 1,
+    AJAR_LIGHT_SUN = 2,
+    AJAR_LIGHT_AREA_RECTANGLE = 3,
+    AJAR_LIGHT_AREA_ELLIPSE = 4
+};
 enum { AJAR_ROLE_PRIMARY = 0, AJAR_ROLE_STATIC = 1 };
 
 /* A lamp in Blender's units; it shines along its local -Z. */
@@ -195,7 +201,7 @@ typedef struct ajar_light_desc {
     float size_x, size_y; /* m: area, full extents in local x and y, before the transform's scale */
     float spread;         /* area: full emission angle, radians, pi = Lambertian */
     uint32_t casts_shadow;
-    uint32_t light_set;   /* light set it belongs to, or AJAR_NONE */
+    uint32_t light_set; /* light set it belongs to, or AJAR_NONE */
 } ajar_light_desc;
 
 enum { AJAR_SKY_NONE = 0, AJAR_SKY_CONSTANT = 1, AJAR_SKY_EQUIRECT = 2 };
@@ -237,8 +243,8 @@ AJAR_API ajar_result ajar_scene_set_sky(ajar_scene scene, const ajar_sky_desc* d
 AJAR_API ajar_result ajar_scene_commit(ajar_scene scene);
 /* Warnings so far. Text and culprit are copied, NUL-terminated, cut to the sizes given. */
 AJAR_API ajar_result ajar_scene_warning_count(ajar_scene scene, uint32_t* out_count);
-AJAR_API ajar_result ajar_scene_warning(ajar_scene scene, uint32_t index, char* text, uint64_t text_size,
-                                        char* culprit, uint64_t culprit_size);
+AJAR_API ajar_result ajar_scene_warning(ajar_scene scene, uint32_t index, char* text, uint64_t text_size, char* culprit,
+                                        uint64_t culprit_size);
 
 /* ---- bake --------------------------------------------------------------------------------- */
 
@@ -256,27 +262,38 @@ typedef struct ajar_settings {
     uint32_t direct_samples;      /* shadow rays per texel in the final pass */
     uint32_t positions_per_texel; /* 1..16 */
     uint32_t seed;
-    uint32_t threads;             /* 0 = all */
-    uint32_t stitch_seams;        /* 1: least-squares seam stitching */
-    uint32_t keep_sh;             /* 1: keep 9-coefficient SH layers */
-    uint32_t keep_bounces;        /* 1: keep the irradiance of every bounce apart (tests) */
-    uint32_t combinations;        /* AJAR_COMBINATIONS_* */
-    float term_threshold;         /* a texel keeps a term if lit by it directly or brighter than this share
-                                     of the term's mean indirect light there; 0 keeps all */
+    uint32_t threads;      /* 0 = all */
+    uint32_t stitch_seams; /* 1: least-squares seam stitching */
+    uint32_t keep_sh;      /* 1: keep 9-coefficient SH layers */
+    uint32_t keep_bounces; /* 1: keep the irradiance of every bounce apart (tests) */
+    uint32_t combinations; /* AJAR_COMBINATIONS_* */
+    float term_threshold;  /* a texel keeps a term if lit by it directly or brighter than this share
+                              of the term's mean indirect light there; 0 keeps all */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 
-enum { AJAR_STAGE_IDLE = 0, AJAR_STAGE_RECEIVERS, AJAR_STAGE_ACCEL, AJAR_STAGE_DIRECT, AJAR_STAGE_BOUNCES,
-       AJAR_STAGE_PILOT, AJAR_STAGE_GATHER, AJAR_STAGE_POST, AJAR_STAGE_ENCODE, AJAR_STAGE_DONE, AJAR_STAGE_COUNT };
+enum {
+    AJAR_STAGE_IDLE = 0,
+    AJAR_STAGE_RECEIVERS,
+    AJAR_STAGE_ACCEL,
+    AJAR_STAGE_DIRECT,
+    AJAR_STAGE_BOUNCES,
+    AJAR_STAGE_PILOT,
+    AJAR_STAGE_GATHER,
+    AJAR_STAGE_POST,
+    AJAR_STAGE_ENCODE,
+    AJAR_STAGE_DONE,
+    AJAR_STAGE_COUNT
+};
 
 typedef struct ajar_progress {
     uint32_t struct_size;
-    uint32_t stage;       /* AJAR_STAGE_* */
-    float fraction;       /* of the whole bake, 0..1 */
-    float elapsed;        /* s */
-    float remaining;      /* s, estimated; negative while unknown */
-    ajar_result result;   /* AJAR_RUNNING until the job ends */
-    uint64_t rays;        /* traced so far */
+    uint32_t stage;     /* AJAR_STAGE_* */
+    float fraction;     /* of the whole bake, 0..1 */
+    float elapsed;      /* s */
+    float remaining;    /* s, estimated; negative while unknown */
+    ajar_result result; /* AJAR_RUNNING until the job ends */
+    uint64_t rays;      /* traced so far */
 } ajar_progress;
 AJAR_API void ajar_progress_init(ajar_progress* progress);
 /* Name of a stage for display, e.g. "final gather"; never NULL. Static storage. */
@@ -305,10 +322,11 @@ enum {
     AJAR_LAYER_BOUNCE = 16     /* + b: 3 channels, irradiance of bounce b; keep_bounces */
 };
 /* Size of one page's layer: rows bottom-up, channels interleaved float32. */
-AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t layer,
-                                         uint32_t* out_width, uint32_t* out_height, uint32_t* out_channels);
+AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t layer, uint32_t* out_width,
+                                         uint32_t* out_height, uint32_t* out_channels);
 /* Copies a layer into buffer of float_count floats. */
-AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t layer, float* buffer, uint64_t float_count);
+AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t layer, float* buffer,
+                                         uint64_t float_count);
 /* One term of the baked light, a product of elements (algorithms in Seyb et al. 2020, "The Design
  * and Evolution of the UberBake Light Baking System"): light at any texel is the sum over terms of
  * irradiance times the weights of the term's elements. Term 0 is the base, the product of none. */
@@ -316,16 +334,17 @@ typedef struct ajar_term_info {
     uint32_t struct_size;
     uint32_t element_count;
     uint32_t elements[AJAR_MAX_TERM_ELEMENTS]; /* element ids, ascending */
-    uint32_t is_signed;      /* 1: takes light away somewhere */
-    uint64_t texel_count;    /* texels that keep it */
-    float relative_error;    /* estimated standard error over the texels it keeps, relative to their mean */
-    float discarded;         /* share of the term's light at texels that do not keep it */
+    uint32_t is_signed;                        /* 1: takes light away somewhere */
+    uint64_t texel_count;                      /* texels that keep it */
+    float relative_error; /* estimated standard error over the texels it keeps, relative to their mean */
+    float discarded;      /* share of the term's light at texels that do not keep it */
 } ajar_term_info;
 AJAR_API void ajar_term_info_init(ajar_term_info* info);
 AJAR_API ajar_result ajar_job_term_count(ajar_job job, uint32_t* out_count);
 AJAR_API ajar_result ajar_job_term(ajar_job job, uint32_t term, ajar_term_info* out_info);
 /* One page of a term's irradiance, 3 floats per texel, W/m^2, 0 where it is not kept; rows bottom-up. */
-AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer, uint64_t float_count);
+AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer,
+                                        uint64_t float_count);
 /* Report as UTF-8 JSON (schemas/report.schema.json). *size holds the buffer's size, and after the
  * call the size needed including the NUL; buffer may be NULL to ask. */
 AJAR_API ajar_result ajar_job_report(ajar_job job, char* buffer, uint64_t* size);
@@ -340,9 +359,9 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
 typedef struct ajar_layout_settings {
     uint32_t struct_size;
     float texels_per_meter;
-    uint32_t atlas_size;   /* largest page edge, texels */
-    uint32_t padding;      /* texels kept free between charts */
-    float chart_angle;     /* radians a face normal may leave its chart's axis */
+    uint32_t atlas_size; /* largest page edge, texels */
+    uint32_t padding;    /* texels kept free between charts */
+    float chart_angle;   /* radians a face normal may leave its chart's axis */
 } ajar_layout_settings;
 AJAR_API void ajar_layout_settings_init(ajar_layout_settings* settings);
 
@@ -351,15 +370,15 @@ typedef struct ajar_layout_mesh_desc {
     uint32_t struct_size;
     const char* name;
     uint32_t vertex_count, corner_count, polygon_count;
-    const float* positions;         /* [vertex_count][3], local space */
-    const uint32_t* corner_vertex;  /* [corner_count] */
-    const uint32_t* polygon_start;  /* [polygon_count] first corner */
-    const uint32_t* polygon_size;   /* [polygon_count] corners, >= 3 */
+    const float* positions;           /* [vertex_count][3], local space */
+    const uint32_t* corner_vertex;    /* [corner_count] */
+    const uint32_t* polygon_start;    /* [polygon_count] first corner */
+    const uint32_t* polygon_size;     /* [polygon_count] corners, >= 3 */
     const uint8_t* corner_edge_sharp; /* [corner_count] edge to the next corner is sharp, or NULL */
-    const float* corner_uv;         /* [corner_count][2] charts to keep, or NULL: unwrap */
-    uint32_t user_count;            /* instances of this mesh */
-    const double* user_transforms;  /* [user_count][12] row-major 3x4 */
-    const float* user_texel_scale;  /* [user_count] or NULL: 1 */
+    const float* corner_uv;           /* [corner_count][2] charts to keep, or NULL: unwrap */
+    uint32_t user_count;              /* instances of this mesh */
+    const double* user_transforms;    /* [user_count][12] row-major 3x4 */
+    const float* user_texel_scale;    /* [user_count] or NULL: 1 */
 } ajar_layout_mesh_desc;
 AJAR_API void ajar_layout_mesh_desc_init(ajar_layout_mesh_desc* desc);
 
@@ -369,7 +388,8 @@ AJAR_API ajar_result ajar_layout_add_mesh(ajar_layout layout, const ajar_layout_
 /* Unwraps and packs everything added. */
 AJAR_API ajar_result ajar_layout_run(ajar_layout layout);
 AJAR_API ajar_result ajar_layout_page_count(ajar_layout layout, uint32_t* out_count);
-AJAR_API ajar_result ajar_layout_page_size(ajar_layout layout, uint32_t page, uint32_t* out_width, uint32_t* out_height);
+AJAR_API ajar_result ajar_layout_page_size(ajar_layout layout, uint32_t page, uint32_t* out_width,
+                                           uint32_t* out_height);
 /* Lightmap UVs of a mesh: corner_count*2 floats in [0,1]. With one user they are page UVs. */
 AJAR_API ajar_result ajar_layout_mesh_uv(ajar_layout layout, uint32_t mesh, float* buffer, uint64_t float_count);
 /* Where a user of a mesh lies: page UV = uv * scale + offset. */

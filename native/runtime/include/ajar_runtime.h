@@ -55,7 +55,7 @@ enum {
     AJAR_RUNTIME_ERROR_DATA = -5,        /* a file is damaged, cut short or of another version */
     AJAR_RUNTIME_ERROR_MEMORY = -6,
     AJAR_RUNTIME_ERROR_IO = -7,
-    AJAR_RUNTIME_ERROR_BUFFER = -8,      /* caller's buffer is of wrong size */
+    AJAR_RUNTIME_ERROR_BUFFER = -8, /* caller's buffer is of wrong size */
     AJAR_RUNTIME_ERROR_INTERNAL = -10
 };
 
@@ -85,13 +85,13 @@ enum { AJAR_RUNTIME_LIGHT_SET = 0, AJAR_RUNTIME_DOOR = 1, AJAR_RUNTIME_TOGGLE = 
 
 typedef struct ajar_runtime_element {
     uint32_t struct_size;
-    uint32_t kind;         /* AJAR_RUNTIME_LIGHT_SET, ... */
-    const char* name;      /* UTF-8, valid until release */
-    float weight;          /* as last set */
+    uint32_t kind;    /* AJAR_RUNTIME_LIGHT_SET, ... */
+    const char* name; /* UTF-8, valid until release */
+    float weight;     /* as last set */
     float start_weight;
-    float color[3];        /* as last set; 1 1 1 for doors and toggles */
-    uint32_t dispatches;   /* groups of texels that a change updates */
-    uint64_t texels;       /* texels in them */
+    float color[3];      /* as last set; 1 1 1 for doors and toggles */
+    uint32_t dispatches; /* groups of texels that a change updates */
+    uint64_t texels;     /* texels in them */
 } ajar_runtime_element;
 AJAR_RUNTIME_API void ajar_runtime_element_init(ajar_runtime_element* element);
 
@@ -106,7 +106,8 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_find_element(ajar_runtime runt
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_set_weight(ajar_runtime runtime, uint32_t element, float weight);
 /* Colour of a light set relative to the bake: its light is multiplied by weight * color. Finite,
  * not negative. */
-AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_set_color(ajar_runtime runtime, uint32_t element, const float color[3]);
+AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_set_color(ajar_runtime runtime, uint32_t element,
+                                                            const float color[3]);
 /* Openness of a hinged leaf at an angle from closed, relative to the angle it was baked open at;
  * radians, either sign, 0 to 1. Diffuse light through a slit between leaf and frame grows with
  * sin(angle / 2): the view factor of the opening through the gap, by Hottel's crossed strings. */
@@ -147,8 +148,9 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_texels(ajar_runtime runti
                                                               const uint32_t** out_direction);
 /* Irradiance along the surface normal in W/m^2 as floats, BOTTOM row first as Blender's and OpenGL's
  * images are: channels is 3 (RGB) or 4 (RGBA, alpha 1); float_count = width * height * channels. */
-AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime runtime, uint32_t page, uint32_t channels,
-                                                                  float* buffer, uint64_t float_count);
+AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime runtime, uint32_t page,
+                                                                  uint32_t channels, float* buffer,
+                                                                  uint64_t float_count);
 
 /* ---- update on a graphics card ------------------------------------------------------------ */
 
@@ -167,9 +169,9 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_get_buffers(ajar_runtime runti
 /* What the shader has to do now; valid until the next call on the runtime that changes or updates it. */
 typedef struct ajar_runtime_work {
     uint32_t struct_size;
-    uint32_t group_count;        /* work groups */
-    const uint32_t* groups;      /* [group_count][2]: dispatch, first receiver */
-    const float* term_weights;   /* [term_count][4]: RGB weight of each term, 0 */
+    uint32_t group_count;      /* work groups */
+    const uint32_t* groups;    /* [group_count][2]: dispatch, first receiver */
+    const float* term_weights; /* [term_count][4]: RGB weight of each term, 0 */
     ajar_runtime_stats stats;
 } ajar_runtime_work;
 AJAR_RUNTIME_API void ajar_runtime_work_init(ajar_runtime_work* work);

@@ -94,9 +94,11 @@ struct Collector {
 void collect(const RTCFilterFunctionNArguments* a) {
     const auto* c = reinterpret_cast<const Collector*>(a->context);
     const uint32_t triangle = RTCHitN_primID(a->hit, a->N, 0) + (*c->first)[RTCHitN_geomID(a->hit, a->N, 0)];
-    const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) + RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
+    const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) +
+                       RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
                        RTCRayN_dir_z(a->ray, a->N, 0) * RTCHitN_Ng_z(a->hit, a->N, 0);
-    c->out->push_back({triangle, RTCHitN_u(a->hit, a->N, 0), RTCHitN_v(a->hit, a->N, 0), RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
+    c->out->push_back(
+        {triangle, RTCHitN_u(a->hit, a->N, 0), RTCHitN_v(a->hit, a->N, 0), RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
     a->valid[0] = 0;
 }
 
@@ -140,11 +142,15 @@ struct Tracer::Impl {
 
     void add_group(const Snapshot& s, uint32_t begin, uint32_t end) {
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertices = rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), s.positions.size());
-        auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - begin));
-        if (vertices == nullptr || indices == nullptr) throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer");
+        auto* vertices =
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), s.positions.size());
+        auto* indices = static_cast<uint32_t*>(
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - begin));
+        if (vertices == nullptr || indices == nullptr)
+            throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer");
         std::memcpy(vertices, s.positions.data(), s.positions.size() * sizeof(Vec3));
-        for (uint32_t t = begin; t < end; ++t) std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
+        for (uint32_t t = begin; t < end; ++t)
+            std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
 #ifdef AJAR_EMBREE4
         rtcSetGeometryEnableFilterFunctionFromArguments(g, true);
 #endif
@@ -156,12 +162,14 @@ struct Tracer::Impl {
     }
 };
 
-Tracer::Tracer(const Snapshot& s) : scene_(s), impl_(std::make_unique<Impl>()), floor_(std::max(s.diagonal(), 1e-6f) * 1e-3f) {
+Tracer::Tracer(const Snapshot& s)
+    : scene_(s), impl_(std::make_unique<Impl>()), floor_(std::max(s.diagonal(), 1e-6f) * 1e-3f) {
     impl_->device = rtcNewDevice(nullptr);
     if (impl_->device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
     impl_->scene = rtcNewScene(impl_->device);
     // Only all_hits needs the filter, and only switchable surfaces need all_hits.
-    rtcSetSceneFlags(impl_->scene, s.has_switches() ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag) : RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(impl_->scene, s.has_switches() ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag)
+                                                    : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
     const auto count = static_cast<uint32_t>(s.triangles.size());
     for (uint32_t begin = 0, end; begin < count; begin = end) {
@@ -172,14 +180,17 @@ Tracer::Tracer(const Snapshot& s) : scene_(s), impl_(std::make_unique<Impl>()), 
     // One thread: a parallel build may order coincident triangles differently each time, and the
     // bake promises the same bytes for any number of threads.
     tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
-    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE) throw Error(AJAR_ERROR_MEMORY, "the ray tracer could not be built");
+    if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
+        throw Error(AJAR_ERROR_MEMORY, "the ray tracer could not be built");
 }
 
 Tracer::~Tracer() = default;
 
 void Tracer::intersect(const int32_t* valid, RayPacket& rays) const {
     call_intersect8(valid, impl_->scene, reinterpret_cast<RTCRayHit8*>(&rays));
-    for (uint32_t i = 0; i < kLanes; ++i) rays.triangle[i] = rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : rays.triangle[i] + impl_->first[rays.group[i]];
+    for (uint32_t i = 0; i < kLanes; ++i)
+        rays.triangle[i] =
+            rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : rays.triangle[i] + impl_->first[rays.group[i]];
 }
 
 void Tracer::occluded(const int32_t* valid, RayPacket& rays) const {
@@ -200,8 +211,10 @@ void Tracer::all_hits(const Ray& ray, uint32_t mask, std::vector<Hit>& out) cons
     RTCRayHit q = make_ray(ray, mask);
     Collector c{{}, &impl_->first, &out};
     call_collect(impl_->scene, &q, c);
-    std::sort(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }), out.end());
+    std::sort(out.begin(), out.end(),
+              [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
+    out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }),
+              out.end());
     for (Hit& h : out) h.back = h.back != scene_.triangles[h.triangle].mirrored;
 }
 

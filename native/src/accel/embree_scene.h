@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "accel/ray.h"
-
 #include <memory>
 #include <vector>
+
+#include "accel/ray.h"
 
 namespace ajar {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
+
 #include "base/math.h"
 #include "scene/snapshot.h"
-
-#include <limits>
 
 namespace ajar {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // ajar_job_*: check, guard, forward.
+#include <bit>
+
 #include "api/guard.h"
 #include "api/tables.h"
 #include "package/package_writer.h"
-
-#include <bit>
 
 using namespace ajar;
 
@@ -17,7 +17,8 @@ ajar_settings checked_settings(const ajar_settings* settings) {
     if (!(s.time_limit >= 0.0f)) fail("time_limit must be 0 or more seconds");
     if (s.bounces > 256) fail("bounces must be 256 at most");
     if (!std::has_single_bit(s.samples) || s.samples > (1u << 20)) fail("samples must be a power of two up to 1048576");
-    if (!std::has_single_bit(s.bounce_samples) || s.bounce_samples > (1u << 16)) fail("bounce_samples must be a power of two up to 65536");
+    if (!std::has_single_bit(s.bounce_samples) || s.bounce_samples > (1u << 16))
+        fail("bounce_samples must be a power of two up to 65536");
     if (s.direct_samples == 0 || s.direct_samples > (1u << 20)) fail("direct_samples must lie in 1..1048576");
     if (s.positions_per_texel == 0 || s.positions_per_texel > 16) fail("positions_per_texel must lie in 1..16");
     if (s.combinations > AJAR_COMBINATIONS_ALL) fail("combinations has an unknown value");
@@ -33,18 +34,26 @@ struct Layer {
 
 Layer find_layer(const BakedPages& b, uint32_t layer) {
     switch (layer) {
-    case AJAR_LAYER_IRRADIANCE: return {&b.irradiance.data()->x, 3};
-    case AJAR_LAYER_STDERR: return {b.standard_error.data(), 1};
-    case AJAR_LAYER_SAMPLES: return {b.samples.data(), 1};
-    case AJAR_LAYER_VALIDITY: return {b.validity.data(), 1};
-    case AJAR_LAYER_ALBEDO: return {&b.albedo.data()->x, 3};
-    case AJAR_LAYER_AHD: return {nullptr, 2};
-    case AJAR_LAYER_SH:
-        if (!b.sh_rgb.empty()) return {b.sh_rgb.data(), 27};
-        throw Error(AJAR_ERROR_ARGUMENT, "the bake did not keep spherical harmonics; set keep_sh");
-    default: break;
+        case AJAR_LAYER_IRRADIANCE:
+            return {&b.irradiance.data()->x, 3};
+        case AJAR_LAYER_STDERR:
+            return {b.standard_error.data(), 1};
+        case AJAR_LAYER_SAMPLES:
+            return {b.samples.data(), 1};
+        case AJAR_LAYER_VALIDITY:
+            return {b.validity.data(), 1};
+        case AJAR_LAYER_ALBEDO:
+            return {&b.albedo.data()->x, 3};
+        case AJAR_LAYER_AHD:
+            return {nullptr, 2};
+        case AJAR_LAYER_SH:
+            if (!b.sh_rgb.empty()) return {b.sh_rgb.data(), 27};
+            throw Error(AJAR_ERROR_ARGUMENT, "the bake did not keep spherical harmonics; set keep_sh");
+        default:
+            break;
     }
-    if (layer < AJAR_LAYER_BOUNCE || layer - AJAR_LAYER_BOUNCE >= b.bounces.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such layer");
+    if (layer < AJAR_LAYER_BOUNCE || layer - AJAR_LAYER_BOUNCE >= b.bounces.size())
+        throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such layer");
     return {&b.bounces[layer - AJAR_LAYER_BOUNCE].data()->x, 3};
 }
 
@@ -82,7 +91,8 @@ void copy_term(const BakedTerm& term, const Page& page, float* out) {
     const uint64_t texels = uint64_t{page.width} * page.height;
     std::memset(out, 0, 3 * texels * sizeof(float));
     for (size_t i = 0; i < term.texel.size(); ++i)
-        if (const uint64_t local = term.texel[i] - page.first_texel; local < texels) std::memcpy(out + 3 * local, &term.irradiance[i], sizeof(Vec3));
+        if (const uint64_t local = term.texel[i] - page.first_texel; local < texels)
+            std::memcpy(out + 3 * local, &term.irradiance[i], sizeof(Vec3));
 }
 
 } // namespace
@@ -127,7 +137,8 @@ AJAR_API ajar_result ajar_job_wait(ajar_job job, double timeout) {
     });
 }
 
-AJAR_API ajar_result ajar_job_error(ajar_job job, char* text, uint64_t text_size, char* culprit, uint64_t culprit_size) {
+AJAR_API ajar_result ajar_job_error(ajar_job job, char* text, uint64_t text_size, char* culprit,
+                                    uint64_t culprit_size) {
     return guarded([&] {
         const Warning why = jobs().get(job)->failure();
         copy_text(why.text, text, text_size);
@@ -147,7 +158,8 @@ AJAR_API ajar_result ajar_job_release(ajar_job* job) {
     });
 }
 
-AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t layer, uint32_t* width, uint32_t* height, uint32_t* channels) {
+AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t layer, uint32_t* width, uint32_t* height,
+                                         uint32_t* channels) {
     return guarded([&] {
         const auto j = jobs().get(job);
         const JobOutput& output = j->output();
@@ -159,16 +171,20 @@ AJAR_API ajar_result ajar_job_layer_size(ajar_job job, uint32_t page, uint32_t l
     });
 }
 
-AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t layer, float* buffer, uint64_t float_count) {
+AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t layer, float* buffer,
+                                         uint64_t float_count) {
     return guarded([&] {
         const auto j = jobs().get(job);
         const JobOutput& output = j->output();
         const Page& p = find_page(*j, page);
         const Layer l = find_layer(output.pages, layer);
         const uint64_t needed = uint64_t{l.channels} * p.width * p.height;
-        if (buffer == nullptr || float_count < needed) throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the layer");
-        if (l.data == nullptr) copy_packed(output.pages, p, buffer);
-        else std::memcpy(buffer, l.data + p.first_texel * l.channels, needed * sizeof(float));
+        if (buffer == nullptr || float_count < needed)
+            throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the layer");
+        if (l.data == nullptr)
+            copy_packed(output.pages, p, buffer);
+        else
+            std::memcpy(buffer, l.data + p.first_texel * l.channels, needed * sizeof(float));
         return AJAR_OK;
     });
 }
@@ -190,16 +206,20 @@ AJAR_API ajar_result ajar_job_term(ajar_job job, uint32_t term, ajar_term_info* 
     });
 }
 
-AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer, uint64_t float_count) {
+AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t page, float* buffer,
+                                        uint64_t float_count) {
     return guarded([&] {
         const auto j = jobs().get(job);
         const BakedPages& b = j->output().pages;
         const Page& p = find_page(*j, page);
         const uint64_t needed = uint64_t{3} * p.width * p.height;
         if (term > b.terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
-        if (buffer == nullptr || float_count < needed) throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the page");
-        if (term == 0) std::memcpy(buffer, &b.irradiance[p.first_texel], needed * sizeof(float));
-        else copy_term(b.terms[term - 1], p, buffer);
+        if (buffer == nullptr || float_count < needed)
+            throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the page");
+        if (term == 0)
+            std::memcpy(buffer, &b.irradiance[p.first_texel], needed * sizeof(float));
+        else
+            copy_term(b.terms[term - 1], p, buffer);
         return AJAR_OK;
     });
 }
@@ -221,7 +241,9 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
         const auto j = jobs().get(job);
         if (directory == nullptr || *directory == 0) throw Error(AJAR_ERROR_ARGUMENT, "the package needs a directory");
         PackageContent content = package_content(j->scene(), j->output().pages);
-        if (extras != nullptr) content.extras = *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
+        if (extras != nullptr)
+            content.extras =
+                *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
         write_package(content, directory);
         return AJAR_OK;
     });

@@ -59,13 +59,15 @@ AJAR_API ajar_result ajar_layout_mesh_uv(ajar_layout layout, uint32_t mesh, floa
     return guarded([&] {
         const auto l = layouts().get(layout);
         const auto uv = l->mesh_uv(mesh);
-        if (float_count < uv.size() || (buffer == nullptr && !uv.empty())) throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the mesh has UVs");
+        if (float_count < uv.size() || (buffer == nullptr && !uv.empty()))
+            throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the mesh has UVs");
         if (!uv.empty()) std::memcpy(buffer, uv.data(), uv.size_bytes());
         return AJAR_OK;
     });
 }
 
-AJAR_API ajar_result ajar_layout_user(ajar_layout layout, uint32_t mesh, uint32_t user, uint32_t* page, float scale[2], float offset[2], float* density) {
+AJAR_API ajar_result ajar_layout_user(ajar_layout layout, uint32_t mesh, uint32_t user, uint32_t* page, float scale[2],
+                                      float offset[2], float* density) {
     return guarded([&] {
         const LayoutUser u = layouts().get(layout)->user(mesh, user);
         if (scale == nullptr || offset == nullptr) throw Error(AJAR_ERROR_ARGUMENT, "an output pointer is null");
@@ -84,7 +86,8 @@ AJAR_API ajar_result ajar_layout_warning_count(ajar_layout layout, uint32_t* out
     });
 }
 
-AJAR_API ajar_result ajar_layout_warning(ajar_layout layout, uint32_t index, char* text, uint64_t text_size, char* culprit, uint64_t culprit_size) {
+AJAR_API ajar_result ajar_layout_warning(ajar_layout layout, uint32_t index, char* text, uint64_t text_size,
+                                         char* culprit, uint64_t culprit_size) {
     return guarded([&] {
         const auto l = layouts().get(layout);
         if (index >= l->warnings().size()) throw Error(AJAR_ERROR_ARGUMENT, "there is no warning of that index");

@@ -8,7 +8,8 @@ using namespace ajar;
 
 namespace {
 
-template <class Desc, class Add> ajar_result add(ajar_scene scene, const Desc* desc, uint32_t* out_id, Add&& method) {
+template <class Desc, class Add>
+ajar_result add(ajar_scene scene, const Desc* desc, uint32_t* out_id, Add&& method) {
     return guarded([&] {
         const auto builder = scenes().get(scene);
         uint32_t& id = required(out_id);
@@ -25,7 +26,8 @@ extern "C" {
 AJAR_API ajar_result ajar_scene_create(const char* name, ajar_scene* out) {
     return guarded([&] {
         ajar_scene& handle = required(out);
-        handle = static_cast<ajar_scene>(scenes().add(std::make_shared<SnapshotBuilder>(name != nullptr ? name : "scene")));
+        handle =
+            static_cast<ajar_scene>(scenes().add(std::make_shared<SnapshotBuilder>(name != nullptr ? name : "scene")));
         return AJAR_OK;
     });
 }
@@ -38,12 +40,24 @@ AJAR_API ajar_result ajar_scene_release(ajar_scene* scene) {
     });
 }
 
-AJAR_API ajar_result ajar_scene_add_texture(ajar_scene s, const ajar_texture_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_texture); }
-AJAR_API ajar_result ajar_scene_add_material(ajar_scene s, const ajar_material_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_material); }
-AJAR_API ajar_result ajar_scene_add_mesh(ajar_scene s, const ajar_mesh_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_mesh); }
-AJAR_API ajar_result ajar_scene_add_element(ajar_scene s, const ajar_element_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_element); }
-AJAR_API ajar_result ajar_scene_add_instance(ajar_scene s, const ajar_instance_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_instance); }
-AJAR_API ajar_result ajar_scene_add_light(ajar_scene s, const ajar_light_desc* d, uint32_t* id) { return add(s, d, id, &SnapshotBuilder::add_light); }
+AJAR_API ajar_result ajar_scene_add_texture(ajar_scene s, const ajar_texture_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_texture);
+}
+AJAR_API ajar_result ajar_scene_add_material(ajar_scene s, const ajar_material_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_material);
+}
+AJAR_API ajar_result ajar_scene_add_mesh(ajar_scene s, const ajar_mesh_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_mesh);
+}
+AJAR_API ajar_result ajar_scene_add_element(ajar_scene s, const ajar_element_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_element);
+}
+AJAR_API ajar_result ajar_scene_add_instance(ajar_scene s, const ajar_instance_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_instance);
+}
+AJAR_API ajar_result ajar_scene_add_light(ajar_scene s, const ajar_light_desc* d, uint32_t* id) {
+    return add(s, d, id, &SnapshotBuilder::add_light);
+}
 
 AJAR_API ajar_result ajar_scene_add_page(ajar_scene s, uint32_t width, uint32_t height, uint32_t* out_id) {
     return guarded([&] {
@@ -77,7 +91,8 @@ AJAR_API ajar_result ajar_scene_warning_count(ajar_scene s, uint32_t* out) {
     });
 }
 
-AJAR_API ajar_result ajar_scene_warning(ajar_scene s, uint32_t index, char* text, uint64_t text_size, char* culprit, uint64_t culprit_size) {
+AJAR_API ajar_result ajar_scene_warning(ajar_scene s, uint32_t index, char* text, uint64_t text_size, char* culprit,
+                                        uint64_t culprit_size) {
     return guarded([&] {
         const auto builder = scenes().get(s);
         if (index >= builder->warnings().size()) throw Error(AJAR_ERROR_ARGUMENT, "there is no warning of that index");

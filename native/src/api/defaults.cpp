@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Initialisers of the public structs; the defaults are part of the ABI.
-#include "api/guard.h"
-
 #include <numbers>
+
+#include "api/guard.h"
 
 using namespace ajar;
 
@@ -27,7 +27,8 @@ AJAR_API void ajar_input_init(ajar_input* in) {
 AJAR_API void ajar_closure_init(ajar_closure* c) {
     if (c == nullptr) return;
     std::memset(c, 0, sizeof(*c));
-    for (ajar_input* in : {&c->weight_a, &c->weight_b, &c->color, &c->strength, &c->metallic, &c->roughness}) ajar_input_init(in);
+    for (ajar_input* in : {&c->weight_a, &c->weight_b, &c->color, &c->strength, &c->metallic, &c->roughness})
+        ajar_input_init(in);
     c->metallic.value[0] = c->metallic.value[1] = c->metallic.value[2] = 0.0f;
     c->roughness.value[0] = c->roughness.value[1] = c->roughness.value[2] = 0.5f;
     c->specular = 0.5f;

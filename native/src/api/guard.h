@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/error.h"
-
 #include <cstring>
 #include <new>
 #include <string>
+
+#include "base/error.h"
 
 namespace ajar {
 
@@ -18,7 +18,8 @@ LastError& last_error();
 ajar_result remember(ajar_result code, const char* message, const char* culprit) noexcept;
 
 /// Runs the body of an ABI function; every failure becomes a code and nothing is thrown past it.
-template <class Body> ajar_result guarded(Body&& body) noexcept {
+template <class Body>
+ajar_result guarded(Body&& body) noexcept {
     try {
         return body();
     } catch (const Error& e) {
@@ -35,19 +36,24 @@ template <class Body> ajar_result guarded(Body&& body) noexcept {
 }
 
 /// Checks a public struct: not null and of a size this library knows.
-template <class T> const T& checked(const T* desc) {
+template <class T>
+const T& checked(const T* desc) {
     if (desc == nullptr) throw Error(AJAR_ERROR_ARGUMENT, "a description is null");
-    if (desc->struct_size != sizeof(T)) throw Error(AJAR_ERROR_STRUCT_SIZE, "struct_size is not one this library knows; fill the struct with its init function");
+    if (desc->struct_size != sizeof(T))
+        throw Error(AJAR_ERROR_STRUCT_SIZE,
+                    "struct_size is not one this library knows; fill the struct with its init function");
     return *desc;
 }
 
-template <class T> T& required(T* out) {
+template <class T>
+T& required(T* out) {
     if (out == nullptr) throw Error(AJAR_ERROR_ARGUMENT, "an output pointer is null");
     return *out;
 }
 
 /// Zeroed struct with its size set.
-template <class T> void init_struct(T* s) {
+template <class T>
+void init_struct(T* s) {
     if (s == nullptr) return;
     std::memset(s, 0, sizeof(T));
     s->struct_size = sizeof(T);

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/error.h"
-
 #include <memory>
 #include <mutex>
 #include <unordered_map>
+
+#include "base/error.h"
 
 namespace ajar {
 
 /// Objects behind the opaque handles of the ABI. A handle is a number that is never used twice,
 /// dressed as a pointer, so NULL, stale and foreign values are recognised without reading them.
-template <class Object> class HandleTable {
+template <class Object>
+class HandleTable {
 public:
     void* add(std::shared_ptr<Object> object) {
         const std::scoped_lock lock(mutex_);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "api/job.h"
 
-#include "pass/term_bake.h"
-
 #include <chrono>
 #include <new>
 
+#include "pass/term_bake.h"
+
 namespace ajar {
 
-Job::Job(std::shared_ptr<const Snapshot> scene, const ajar_settings& settings) : scene_(std::move(scene)), settings_(settings) {
+Job::Job(std::shared_ptr<const Snapshot> scene, const ajar_settings& settings)
+    : scene_(std::move(scene)), settings_(settings) {
     progress_.start();
     thread_ = std::thread([this] { run(); });
 }
@@ -45,14 +46,18 @@ void Job::bake() {
     const Tracer tracer(scene);
     progress_.begin_stage(AJAR_STAGE_RECEIVERS, 0.06f);
     const Coverage coverage = rasterize(scene, pool, progress_);
-    output_.receivers = make_receivers(scene, tracer, coverage, settings_.positions_per_texel, settings_.seed, pool, progress_, output_.warnings);
-    if (output_.receivers.count() == 0) throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped", scene.name);
+    output_.receivers = make_receivers(scene, tracer, coverage, settings_.positions_per_texel, settings_.seed, pool,
+                                       progress_, output_.warnings);
+    if (output_.receivers.count() == 0)
+        throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
+                    scene.name);
     const SurfaceTable surfaces(scene);
     const EmitterSet emitters(scene, pool, progress_);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
     const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress_};
-    output_.bake = scene.elements.empty() ? Baker(gather, settings_, pool, progress_).run() : TermBaker(gather, settings_, pool, progress_).run();
+    output_.bake = scene.elements.empty() ? Baker(gather, settings_, pool, progress_).run()
+                                          : TermBaker(gather, settings_, pool, progress_).run();
     progress_.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress_);
 }
@@ -77,8 +82,10 @@ Warning Job::failure() const {
 ajar_result Job::wait(double timeout) {
     std::unique_lock lock(mutex_);
     const auto ended = [&] { return result_ != AJAR_RUNNING; };
-    if (timeout < 0.0) done_.wait(lock, ended);
-    else done_.wait_for(lock, std::chrono::duration<double>(std::min(timeout, 1e6)), ended);
+    if (timeout < 0.0)
+        done_.wait(lock, ended);
+    else
+        done_.wait_for(lock, std::chrono::duration<double>(std::min(timeout, 1e6)), ended);
     return result_;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "api/job.h"
+#include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
 
-#include <sys/resource.h>
+#include "api/job.h"
 
 namespace ajar {
 
@@ -12,14 +12,25 @@ namespace {
 using nlohmann::json;
 
 json settings_json(const ajar_settings& s) {
-    return {{"bounces", s.bounces}, {"noise_target", s.noise_target}, {"time_limit", s.time_limit}, {"samples", s.samples},
-            {"bounce_samples", s.bounce_samples}, {"direct_samples", s.direct_samples}, {"positions_per_texel", s.positions_per_texel},
-            {"combinations", s.combinations}, {"term_threshold", s.term_threshold}, {"seed", s.seed}, {"threads", s.threads}, {"stitch_seams", s.stitch_seams != 0}, {"keep_sh", s.keep_sh != 0}};
+    return {{"bounces", s.bounces},
+            {"noise_target", s.noise_target},
+            {"time_limit", s.time_limit},
+            {"samples", s.samples},
+            {"bounce_samples", s.bounce_samples},
+            {"direct_samples", s.direct_samples},
+            {"positions_per_texel", s.positions_per_texel},
+            {"combinations", s.combinations},
+            {"term_threshold", s.term_threshold},
+            {"seed", s.seed},
+            {"threads", s.threads},
+            {"stitch_seams", s.stitch_seams != 0},
+            {"keep_sh", s.keep_sh != 0}};
 }
 
 json seconds_json(const Job& job) {
     json stages = json::object();
-    for (uint32_t s = AJAR_STAGE_RECEIVERS; s < AJAR_STAGE_DONE; ++s) stages[ajar_stage_name(s)] = job.progress().stage_seconds(s);
+    for (uint32_t s = AJAR_STAGE_RECEIVERS; s < AJAR_STAGE_DONE; ++s)
+        stages[ajar_stage_name(s)] = job.progress().stage_seconds(s);
     return {{"total", job.seconds()}, {"stages", stages}};
 }
 
@@ -27,7 +38,8 @@ json seconds_json(const Job& job) {
 /// the median (algorithms.md 10.4).
 std::vector<float> relative_errors(const JobOutput& o) {
     std::vector<float> levels;
-    for (size_t r = 0; r < o.receivers.count(); ++r) levels.push_back(luminance(o.pages.irradiance[o.receivers.texel[r]]));
+    for (size_t r = 0; r < o.receivers.count(); ++r)
+        levels.push_back(luminance(o.pages.irradiance[o.receivers.texel[r]]));
     if (levels.empty()) return {};
     std::vector<float> sorted = levels;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2), sorted.end());
@@ -44,11 +56,18 @@ json error_json(const Job& job, const JobOutput& o) {
     const std::vector<float> e = relative_errors(o);
     double squares = 0.0, within = 0.0;
     for (const float v : e) squares += double(v) * v, within += v <= job.settings().noise_target;
-    const auto at = [&](double q) { return e.empty() ? 0.0 : double(e[std::min(e.size() - 1, static_cast<size_t>(q * static_cast<double>(e.size())))]); };
+    const auto at = [&](double q) {
+        return e.empty() ? 0.0
+                         : double(e[std::min(e.size() - 1, static_cast<size_t>(q * static_cast<double>(e.size())))]);
+    };
     const double rms = e.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(e.size()));
     const double gather = job.progress().stage_seconds(AJAR_STAGE_GATHER);
-    return {{"estimated_rms", rms}, {"p50", at(0.5)}, {"p95", at(0.95)}, {"target", job.settings().noise_target},
-            {"share_reached", e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
+    return {{"estimated_rms", rms},
+            {"p50", at(0.5)},
+            {"p95", at(0.95)},
+            {"target", job.settings().noise_target},
+            {"share_reached",
+             e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
             {"calibration", o.bake.error_calibration},
             {"next_step", {{"noise", rms / 2.0}, {"seconds", job.seconds() + 3.0 * gather}}}};
 }
@@ -57,7 +76,8 @@ json bounces_json(const Job& job, const JobOutput& o) {
     double total = 0.0;
     for (const double m : o.bake.bounce_means) total += m;
     const auto& means = o.bake.bounce_means;
-    return {{"count", job.settings().bounces}, {"means", means}, {"last_share", total > 0.0 ? means.back() / total : 0.0}};
+    return {
+        {"count", job.settings().bounces}, {"means", means}, {"last_share", total > 0.0 ? means.back() / total : 0.0}};
 }
 
 json effect(const char* name, bool used, const std::string& why) {
@@ -65,7 +85,8 @@ json effect(const char* name, bool used, const std::string& why) {
 }
 
 json element_effect(const Snapshot& s, ElementKind kind, const char* name) {
-    const auto count = std::count_if(s.elements.begin(), s.elements.end(), [&](const Element& e) { return e.kind == kind; });
+    const auto count =
+        std::count_if(s.elements.begin(), s.elements.end(), [&](const Element& e) { return e.kind == kind; });
     return effect(name, count != 0, count != 0 ? std::to_string(count) : "the scene has none");
 }
 
@@ -74,15 +95,22 @@ json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& se
     for (const Light& l : s.lights) primary += l.primary && !l.dark(), lit += !l.dark();
     for (const Material& m : s.materials) transmissive += m.transmits;
     for (const Instance& i : s.instances) unmapped += !i.lightmapped;
-    const auto combinations = std::count_if(o.pages.terms.begin(), o.pages.terms.end(), [](const BakedTerm& t) { return t.elements.size() > 1; });
+    const auto combinations = std::count_if(o.pages.terms.begin(), o.pages.terms.end(),
+                                            [](const BakedTerm& t) { return t.elements.size() > 1; });
     const auto n = [](size_t v) { return std::to_string(v); };
-    return {effect("primary lights", primary != 0, n(primary) + " lamps"), effect("static lights", lit != primary, n(lit - primary) + " lamps"),
+    return {effect("primary lights", primary != 0, n(primary) + " lamps"),
+            effect("static lights", lit != primary, n(lit - primary) + " lamps"),
             effect("emissive surfaces", o.emissive_triangles != 0, n(o.emissive_triangles) + " triangles"),
-            effect("sky", s.sky.lit(), !s.sky.lit() ? "no sky or black" : o.sky_sampled ? "image, importance sampled" : "constant"),
+            effect("sky", s.sky.lit(),
+                   !s.sky.lit()    ? "no sky or black"
+                   : o.sky_sampled ? "image, importance sampled"
+                                   : "constant"),
             effect("transparency", transmissive != 0, n(transmissive) + " materials"),
             effect("surfaces without lightmap", unmapped != 0, n(unmapped) + " objects"),
             effect("aiming at bright texels", o.bake.bright_texels != 0, n(o.bake.bright_texels) + " texels"),
-            element_effect(s, ElementKind::light_set, "light sets"), element_effect(s, ElementKind::door, "doors"), element_effect(s, ElementKind::toggle, "toggles"),
+            element_effect(s, ElementKind::light_set, "light sets"),
+            element_effect(s, ElementKind::door, "doors"),
+            element_effect(s, ElementKind::toggle, "toggles"),
             effect("combinations of elements", combinations != 0, n(static_cast<size_t>(combinations)) + " terms"),
             effect("bounces", settings.bounces != 0, n(settings.bounces) + " bounces"),
             effect("seam stitching", o.pages.seam_points != 0, n(o.pages.seam_points) + " seam points")};
@@ -94,15 +122,23 @@ json terms_json(const Snapshot& s, const BakedPages& pages) {
     for (const BakedTerm& t : pages.terms) {
         json names = json::array();
         for (const uint32_t e : t.elements) names.push_back(s.elements[e].name);
-        terms.push_back({{"elements", names}, {"texels", t.texel.size()}, {"signed", t.is_signed}, {"relative_error", t.relative_error}, {"discarded", t.discarded}});
+        terms.push_back({{"elements", names},
+                         {"texels", t.texel.size()},
+                         {"signed", t.is_signed},
+                         {"relative_error", t.relative_error},
+                         {"discarded", t.discarded}});
     }
     return terms;
 }
 
 json receivers_json(const JobOutput& o) {
     const double count = std::max(1u, o.receivers.count());
-    return {{"texels", o.receivers.count()}, {"invalid", o.pages.invalid_texels}, {"invalid_share", static_cast<double>(o.pages.invalid_texels) / count},
-            {"albedo_clamped", o.receivers.clamped_albedo}, {"positions_pushed_out", o.receivers.pushed_positions}, {"range_clamped", o.pages.clamped_texels}};
+    return {{"texels", o.receivers.count()},
+            {"invalid", o.pages.invalid_texels},
+            {"invalid_share", static_cast<double>(o.pages.invalid_texels) / count},
+            {"albedo_clamped", o.receivers.clamped_albedo},
+            {"positions_pushed_out", o.receivers.pushed_positions},
+            {"range_clamped", o.pages.clamped_texels}};
 }
 
 uint64_t peak_memory() {
@@ -118,12 +154,23 @@ std::string make_report(const Job& job) {
     json warnings = json::array();
     for (const Warning& w : o.warnings) warnings.push_back({{"culprit", w.culprit}, {"text", w.text}});
     const double seconds = std::max(job.seconds(), 1e-9);
-    const json report = {{"version", 1}, {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT}, {"name", job.scene().name}, {"result", "success"},
-                         {"settings", settings_json(job.settings())}, {"seconds", seconds_json(job)},
-                         {"rays", {{"total", job.progress().rays()}, {"per_second", static_cast<double>(job.progress().rays()) / seconds}}},
-                         {"receivers", receivers_json(o)}, {"error", error_json(job, o)}, {"bounces", bounces_json(job, o)},
-                         {"time_limited", o.bake.time_limited}, {"effects", effects_json(job.scene(), o, job.settings())},
-                         {"terms", terms_json(job.scene(), o.pages)}, {"warnings", warnings}, {"memory_bytes", peak_memory()}};
+    const json report = {
+        {"version", 1},
+        {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT},
+        {"name", job.scene().name},
+        {"result", "success"},
+        {"settings", settings_json(job.settings())},
+        {"seconds", seconds_json(job)},
+        {"rays",
+         {{"total", job.progress().rays()}, {"per_second", static_cast<double>(job.progress().rays()) / seconds}}},
+        {"receivers", receivers_json(o)},
+        {"error", error_json(job, o)},
+        {"bounces", bounces_json(job, o)},
+        {"time_limited", o.bake.time_limited},
+        {"effects", effects_json(job.scene(), o, job.settings())},
+        {"terms", terms_json(job.scene(), o.pages)},
+        {"warnings", warnings},
+        {"memory_bytes", peak_memory()}};
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 

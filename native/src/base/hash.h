@@ -14,7 +14,9 @@ inline uint32_t hash32(uint32_t x) {
     return x ^ (x >> 16);
 }
 
-inline uint32_t hash_combine(uint32_t a, uint32_t b) { return hash32(a ^ (hash32(b) + 0x9e3779b9u + (a << 6) + (a >> 2))); }
+inline uint32_t hash_combine(uint32_t a, uint32_t b) {
+    return hash32(a ^ (hash32(b) + 0x9e3779b9u + (a << 6) + (a >> 2)));
+}
 
 /// 24 high bits as a float in [0, 1).
 inline float unit_float(uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }

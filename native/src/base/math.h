@@ -3,11 +3,10 @@
 
 // GLM under the names the engine uses, and the few helpers it lacks. Right-handed, Z up, metres.
 
-#include <glm/glm.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <numbers>
 
 namespace ajar {

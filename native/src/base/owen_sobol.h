@@ -37,7 +37,9 @@ inline uint32_t sobol_second_reversed(uint32_t index) {
 
 /// Permutes indices inside every aligned block of 2^k, so that their low bits no longer follow
 /// the sequence while each block stays a net (Burley 2020, section 5).
-inline uint32_t shuffle_index(uint32_t index, uint32_t seed) { return reverse_bits(laine_karras(reverse_bits(index), seed)); }
+inline uint32_t shuffle_index(uint32_t index, uint32_t seed) {
+    return reverse_bits(laine_karras(reverse_bits(index), seed));
+}
 
 /// Point index of the sequence scrambled by seed, in [0,1)^2. The dimensions' seeds must differ by
 /// more than a flip of fixed bits, whose hashes are too much alike: single points would cluster.

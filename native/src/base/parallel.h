@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/progress.h"
-
 #include <cstddef>
 #include <functional>
 #include <memory>
+
+#include "base/progress.h"
 
 namespace ajar {
 

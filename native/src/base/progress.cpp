@@ -32,7 +32,9 @@ void Progress::begin_stage(uint32_t stage, float end_fraction) {
 void Progress::update(float stage_fraction) {
     const float f = stage_begin_ + (stage_end_ - stage_begin_) * std::clamp(stage_fraction, 0.0f, 1.0f);
     // Threads report out of order and a stage may loop more than once: the bar only rises.
-    for (float shown = fraction(); shown < f && !fraction_.compare_exchange_weak(shown, f, std::memory_order_relaxed);) {}
+    for (float shown = fraction();
+         shown < f && !fraction_.compare_exchange_weak(shown, f, std::memory_order_relaxed);) {
+    }
 }
 
 double Progress::elapsed() const { return seconds_since(start_); }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/error.h"
-
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+
+#include "base/error.h"
 
 namespace ajar {
 

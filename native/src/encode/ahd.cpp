@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "encode/ahd.h"
 
-#include "sampling/sh.h"
-
 #include <array>
 #include <bit>
+
+#include "sampling/sh.h"
 
 namespace ajar {
 
@@ -69,8 +69,10 @@ Vec3 search(const std::array<float, kNormals>& e, float total, Vec3 best) {
             const float c = fit_ambient(e, total, d).cost;
             if (c < cost) cost = c, next = d;
         }
-        if (next == best) step *= 0.5f;
-        else best = next;
+        if (next == best)
+            step *= 0.5f;
+        else
+            best = next;
     }
     return best;
 }
@@ -131,14 +133,15 @@ Vec3 decode_ahd(const Ahd& a, const Vec3& n) {
 }
 
 uint32_t pack_r11g11b10f(const Vec3& v) {
-    return pack_small_float(v.x, 6, kLargestFloat11) | (pack_small_float(v.y, 6, kLargestFloat11) << 11) | (pack_small_float(v.z, 5, kLargestFloat10) << 22);
+    return pack_small_float(v.x, 6, kLargestFloat11) | (pack_small_float(v.y, 6, kLargestFloat11) << 11) |
+           (pack_small_float(v.z, 5, kLargestFloat10) << 22);
 }
 
-Vec3 unpack_r11g11b10f(uint32_t p) { return {unpack_small_float(p & 0x7ff, 6), unpack_small_float((p >> 11) & 0x7ff, 6), unpack_small_float(p >> 22, 5)}; }
-
-uint32_t pack_half(float v) {
-    return pack_small_float(std::fabs(v), 10, kLargestHalf) | (v < 0.0f ? 0x8000u : 0u);
+Vec3 unpack_r11g11b10f(uint32_t p) {
+    return {unpack_small_float(p & 0x7ff, 6), unpack_small_float((p >> 11) & 0x7ff, 6), unpack_small_float(p >> 22, 5)};
 }
+
+uint32_t pack_half(float v) { return pack_small_float(std::fabs(v), 10, kLargestHalf) | (v < 0.0f ? 0x8000u : 0u); }
 
 float unpack_half(uint32_t p) {
     const float v = unpack_small_float(p & 0x7fffu, 10);

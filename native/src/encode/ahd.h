@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/math.h"
-
 #include <cstdint>
+
+#include "base/math.h"
 
 namespace ajar {
 

@@ -45,7 +45,8 @@ void Assembler::scatter() {
         out.standard_error[t] = result.standard_error[r];
         out.samples[t] = result.samples[r];
         for (size_t b = 0; b < out.bounces.size(); ++b) out.bounces[b][t] = result.bounces[b][r];
-        for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c) out.sh_rgb[size_t{t} * 27 + c] = result.sh_rgb[size_t{r} * 27 + c];
+        for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c)
+            out.sh_rgb[size_t{t} * 27 + c] = result.sh_rgb[size_t{r} * 27 + c];
     }
     usable.resize(state.size());
     for (size_t i = 0; i < state.size(); ++i) usable[i] = state[i] >= kRing;
@@ -75,22 +76,28 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
 
 void Assembler::fill(ThreadPool& pool, Progress& progress) {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
-    if (!result.terms.terms.empty()) out.terms = make_terms(scene, receivers, result.terms, usable, solver.get(), pool, progress);
+    if (!result.terms.terms.empty())
+        out.terms = make_terms(scene, receivers, result.terms, usable, solver.get(), pool, progress);
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
         if (source[i] == i) continue;
         out.irradiance[i] = out.irradiance[source[i]];
         out.packed_irradiance[i] = out.packed_irradiance[source[i]];
         out.packed_direction[i] = out.packed_direction[source[i]];
-        for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c) out.sh_rgb[i * 27 + c] = out.sh_rgb[size_t{source[i]} * 27 + c];
+        for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c)
+            out.sh_rgb[i * 27 + c] = out.sh_rgb[size_t{source[i]} * 27 + c];
     }
     fill_terms(source, out.terms);
 }
 
-std::span<const float> floats_of(const std::vector<Vec3>& v, const Page& p) { return {&v[p.first_texel].x, size_t{3} * p.width * p.height}; }
+std::span<const float> floats_of(const std::vector<Vec3>& v, const Page& p) {
+    return {&v[p.first_texel].x, size_t{3} * p.width * p.height};
+}
 
-template <class T> std::span<const T> part_of(const std::vector<T>& v, const Page& p, size_t channels = 1) {
-    return v.empty() ? std::span<const T>{} : std::span<const T>{&v[p.first_texel * channels], channels * p.width * p.height};
+template <class T>
+std::span<const T> part_of(const std::vector<T>& v, const Page& p, size_t channels = 1) {
+    return v.empty() ? std::span<const T>{}
+                     : std::span<const T>{&v[p.first_texel * channels], channels * p.width * p.height};
 }
 
 const char* kind_name(ElementKind kind) {
@@ -99,8 +106,8 @@ const char* kind_name(ElementKind kind) {
 
 } // namespace
 
-BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result, const ajar_settings& settings,
-                      ThreadPool& pool, Progress& progress) {
+BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result,
+                      const ajar_settings& settings, ThreadPool& pool, Progress& progress) {
     Assembler a{scene, receivers, result, {}, {}, {}, {}};
     a.scatter();
     if (settings.stitch_seams != 0) a.stitch();
@@ -127,12 +134,21 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
         c.pages.push_back(page);
     }
     for (const Instance& i : scene.instances)
-        if (i.lightmapped) c.instances.push_back({i.name, i.page, {i.uv_scale.x, i.uv_scale.y}, {i.uv_offset.x, i.uv_offset.y}, "AjarLightmap"});
+        if (i.lightmapped)
+            c.instances.push_back(
+                {i.name, i.page, {i.uv_scale.x, i.uv_scale.y}, {i.uv_offset.x, i.uv_offset.y}, "AjarLightmap"});
     for (const Element& e : scene.elements) c.elements.push_back({e.name, kind_name(e.kind), e.weight});
     for (const Light& l : scene.lights)
-        c.lights.push_back({l.name, l.primary ? "primary" : "static", l.light_set == kNoElement ? "" : scene.elements[l.light_set].name});
+        c.lights.push_back({l.name, l.primary ? "primary" : "static",
+                            l.light_set == kNoElement ? "" : scene.elements[l.light_set].name});
     for (const BakedTerm& t : baked.terms)
-        c.terms.push_back({t.elements, t.is_signed, t.relative_error, t.discarded, t.texel, {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()}, t.packed_direction});
+        c.terms.push_back({t.elements,
+                           t.is_signed,
+                           t.relative_error,
+                           t.discarded,
+                           t.texel,
+                           {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()},
+                           t.packed_direction});
     return c;
 }
 

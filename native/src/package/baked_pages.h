@@ -27,15 +27,15 @@ struct BakedPages {
     std::vector<BakedTerm> terms; ///< all but the base, which the arrays above hold
     uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
     uint64_t seam_points = 0;
-    uint64_t clamped_texels = 0;  ///< too bright for the packed format
+    uint64_t clamped_texels = 0; ///< too bright for the packed format
 };
 
 /// Share of a receiver's rays that may meet the inside of solids before its light is distrusted.
 inline constexpr float kInsideShare = 0.3f;
 
 /// Scatters receivers to their texels, stitches seams, fills gaps and packs (algorithms.md 1, 9).
-BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result, const ajar_settings& settings,
-                      ThreadPool& pool, Progress& progress);
+BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result,
+                      const ajar_settings& settings, ThreadPool& pool, Progress& progress);
 
 /// View of the pages for the package writer; baked must outlive it.
 PackageContent package_content(const Snapshot& scene, const BakedPages& baked);

@@ -14,13 +14,16 @@ struct Place {
 };
 
 /// Where each term is, by texel.
-std::vector<std::vector<Place>> places_of_terms(const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable) {
+std::vector<std::vector<Place>> places_of_terms(const LightmapReceivers& receivers, const TermResult& terms,
+                                                const std::vector<uint8_t>& usable) {
     std::vector<std::vector<Place>> places(terms.terms.size());
     for (uint32_t r = 0; r + 1 < terms.first.size(); ++r) {
         if (usable[receivers.texel[r]] == 0) continue;
-        for (uint64_t i = terms.first[r]; i < terms.first[r + 1]; ++i) places[terms.light[i].term].push_back({receivers.texel[r], i});
+        for (uint64_t i = terms.first[r]; i < terms.first[r + 1]; ++i)
+            places[terms.light[i].term].push_back({receivers.texel[r], i});
     }
-    for (auto& p : places) std::sort(p.begin(), p.end(), [](const Place& a, const Place& b) { return a.texel < b.texel; });
+    for (auto& p : places)
+        std::sort(p.begin(), p.end(), [](const Place& a, const Place& b) { return a.texel < b.texel; });
     return places;
 }
 
@@ -72,7 +75,9 @@ struct TermMaker {
 
 } // namespace
 
-std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool, Progress& progress) {
+std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms,
+                                  const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool,
+                                  Progress& progress) {
     const auto places = places_of_terms(receivers, terms, usable);
     const TermMaker maker{scene, terms, solver};
     std::vector<BakedTerm> out(terms.terms.size());

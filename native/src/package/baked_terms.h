@@ -8,6 +8,8 @@ namespace ajar {
 
 /// The terms of a bake as lists of texels: seams stitched where solver is not null, directions
 /// fitted, texels that are not usable left out. usable covers all page texels.
-std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms, const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool, Progress& progress);
+std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms,
+                                  const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool,
+                                  Progress& progress);
 
 } // namespace ajar

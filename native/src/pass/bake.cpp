@@ -4,9 +4,9 @@
 // what the pass before it finished, so no result depends on the order of tiles.
 #include "pass/bake.h"
 
-#include "pass/bake_parts.h"
-
 #include <memory>
+
+#include "pass/bake_parts.h"
 
 namespace ajar {
 
@@ -18,7 +18,9 @@ std::unique_ptr<TileSums> make_sums(bool keep_sh) {
     return sums;
 }
 
-Vec3 sum_of(const TileSums& s, uint32_t lane) { return {s.irradiance[0][lane], s.irradiance[1][lane], s.irradiance[2][lane]}; }
+Vec3 sum_of(const TileSums& s, uint32_t lane) {
+    return {s.irradiance[0][lane], s.irradiance[1][lane], s.irradiance[2][lane]};
+}
 
 /// Gather sums to irradiance. Dividing by the sum of cosine weights instead of its expectation
 /// is a ratio estimator: it cancels the noise of the weights, so a uniform room stays uniform.
@@ -55,11 +57,14 @@ Baker::Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool
 }
 
 /// Something can arrive along a gather ray: emission or the sky, or light off other surfaces.
-bool Baker::gathers() const { return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0; }
+bool Baker::gathers() const {
+    return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
+}
 
 void Baker::set_radiance(const std::vector<Vec3>& irradiance) {
     for (uint32_t r = 0; r < s_.receivers.count(); ++r)
-        radiance_[s_.receivers.texel[r]] = Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, s_.receivers.cut[r] != 0 ? float{kTexelCut} : 0.0f);
+        radiance_[s_.receivers.texel[r]] =
+            Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, s_.receivers.cut[r] != 0 ? float{kTexelCut} : 0.0f);
 }
 
 void Baker::keep_bounce(const std::vector<Vec3>& irradiance) {
@@ -77,7 +82,8 @@ void Baker::direct_source() {
         const Tile& tile = s_.receivers.tiles[i];
         const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
         DirectGroups groups(s_.emitters, LightRoles::all, {});
-        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples, hash_combine(seed, s_.receivers.texel[tile.first]));
+        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples,
+                                     hash_combine(seed, s_.receivers.texel[tile.first]));
         auto direct = make_sums(false), gather = make_sums(false);
         const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
         rays += sample_direct(s_, groups.groups()[0], tile, {static_cast<float>(gather_rays), 1.0f}, seed, *direct);
@@ -90,7 +96,8 @@ void Baker::direct_source() {
             rays += gather_tile(s_, tile, o, nullptr, *gather);
         }
         share_quads(tile, *gather, current_);
-        for (uint32_t lane = 0; lane < tile.count; ++lane) current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
+        for (uint32_t lane = 0; lane < tile.count; ++lane)
+            current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
         progress_.add_rays(rays);
     });
     keep_bounce(current_);
@@ -131,9 +138,11 @@ Baker::TileEstimate Baker::estimate(const Tile& tile, const RayPlan& plan, uint3
     TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
     const GatherScene scene = final_scene();
     DirectGroups groups(scene.emitters, LightRoles::stored, {});
-    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct, hash_combine(seed, s_.receivers.texel[tile.first]));
+    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct,
+                                 hash_combine(seed, s_.receivers.texel[tile.first]));
     t.plan.direct = groups.groups()[0].samples;
-    rays += sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(plan.gather), kFinalShare}, seed, *t.direct);
+    rays +=
+        sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(plan.gather), kFinalShare}, seed, *t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
         o.samples = plan.gather;
@@ -152,7 +161,8 @@ EmitterSet Baker::find_bright_texels() {
     std::vector<BrightTexel> bright;
     if (settings_.bounces > 0) {
         std::vector<float> level(s_.receivers.count());
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r)
+            level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
         for (const uint32_t r : bright_receivers(s_.receivers, level)) {
             Vec4& radiance = radiance_[s_.receivers.texel[r]];
             bright.push_back(bright_texel(s_.scene, s_.receivers, r));
@@ -186,9 +196,12 @@ std::vector<RayPlan> Baker::plan_rays() {
             pilot[i].direct_variance += static_cast<float>(t.direct_variance(lane)) * share;
         }
     });
-    const double seconds_per_ray = (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    const double seconds_per_ray =
+        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
     if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());
-    if (timed) result_.time_limited = limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
+    if (timed)
+        result_.time_limited =
+            limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
     return plan;
 }
 
@@ -204,14 +217,17 @@ void Baker::final_gather(const std::vector<RayPlan>& plan) {
     pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
         const TileEstimate t = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal), keep_sh);
-        const float gn = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u)), dn = 1.0f / static_cast<float>(std::max(t.plan.direct, 1u));
+        const float gn = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u)),
+                    dn = 1.0f / static_cast<float>(std::max(t.plan.direct, 1u));
         for (uint32_t lane = 0; lane < tile.count; ++lane) {
             const size_t r = tile.first + lane;
             result_.irradiance[r] = t.irradiance(lane);
-            result_.standard_error[r] = static_cast<float>(std::sqrt(t.gather_variance(lane) + t.direct_variance(lane)));
+            result_.standard_error[r] =
+                static_cast<float>(std::sqrt(t.gather_variance(lane) + t.direct_variance(lane)));
             result_.samples[r] = static_cast<float>(t.plan.gather);
             result_.inside[r] = t.gather->inside[lane] * gn;
-            for (int c = 0; c < kShCount; ++c) result_.sh[r * kShCount + c] = t.gather->sh[c][lane] * gn + t.direct->sh[c][lane] * dn;
+            for (int c = 0; c < kShCount; ++c)
+                result_.sh[r * kShCount + c] = t.gather->sh[c][lane] * gn + t.direct->sh[c][lane] * dn;
             for (int c = 0; c < (keep_sh ? 3 * kShCount : 0); ++c) {
                 const size_t j = size_t(c) * kTileReceivers + lane;
                 result_.sh_rgb[r * 3 * kShCount + c] = t.gather->sh_rgb[j] * gn + t.direct->sh_rgb[j] * dn;
@@ -225,21 +241,24 @@ void Baker::final_gather(const std::vector<RayPlan>& plan) {
 void Baker::calibrate_error(const std::vector<RayPlan>& plan) {
     const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
     std::vector<Vec2> parts(count, Vec2(0.0f));
-    pool_.for_each(count, progress_, [&](size_t k) {
-        const size_t i = k * kCalibrationStep;
-        const Tile& whole = s_.receivers.tiles[i];
-        const Tile tile{whole.first, std::min(kPilotReceivers, whole.count)};
-        const TileEstimate t = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin), false);
-        for (uint32_t lane = 0; lane < tile.count; ++lane) {
-            const size_t r = tile.first + lane;
-            const float a = luminance(result_.irradiance[r]), b = luminance(t.irradiance(lane));
-            const float level = 0.5f * (a + b);
-            if (!(level > 0.0f)) continue;
-            const float se = result_.standard_error[r] / level, d = (a - b) / level;
-            if (se < 1e-5f) continue;
-            parts[k] += Vec2(0.5f * d * d, se * se);
-        }
-    }, false);
+    pool_.for_each(
+        count, progress_,
+        [&](size_t k) {
+            const size_t i = k * kCalibrationStep;
+            const Tile& whole = s_.receivers.tiles[i];
+            const Tile tile{whole.first, std::min(kPilotReceivers, whole.count)};
+            const TileEstimate t = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin), false);
+            for (uint32_t lane = 0; lane < tile.count; ++lane) {
+                const size_t r = tile.first + lane;
+                const float a = luminance(result_.irradiance[r]), b = luminance(t.irradiance(lane));
+                const float level = 0.5f * (a + b);
+                if (!(level > 0.0f)) continue;
+                const float se = result_.standard_error[r] / level, d = (a - b) / level;
+                if (se < 1e-5f) continue;
+                parts[k] += Vec2(0.5f * d * d, se * se);
+            }
+        },
+        false);
     double twin = 0.0, strata = 0.0;
     for (const Vec2& p : parts) twin += p.x, strata += p.y;
     if (count < 8 || !(strata > 0.0)) return;
@@ -259,7 +278,9 @@ BakeResult Baker::run() {
     if (settings_.bounces > 0) {
         // With every bounce kept apart the last one was made for show; the gather adds it itself.
         if (settings_.keep_bounces != 0)
-            for (size_t i = 0; i < current_.size(); ++i) result_.source[i] -= result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
+            for (size_t i = 0; i < current_.size(); ++i)
+                result_.source[i] -=
+                    result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
         set_radiance(result_.source);
     }
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "pass/bake_parts.h"
-#include "pass/term_result.h"
-
 #include <memory>
 #include <vector>
+
+#include "pass/bake_parts.h"
+#include "pass/term_result.h"
 
 namespace ajar {
 
 /// What a bake found, per receiver unless said otherwise.
 struct BakeResult {
-    std::vector<Vec3> irradiance;       ///< W/m^2 along the shading normal, stored part
-    std::vector<float> sh;              ///< [count][9] luminance of incident radiance, tangent frame
-    std::vector<float> sh_rgb;          ///< [count][27] if kept
-    std::vector<float> standard_error;  ///< of the irradiance's luminance, W/m^2
-    std::vector<float> samples;         ///< gather rays
-    std::vector<float> inside;          ///< share of rays that met the inside of a solid close by
+    std::vector<Vec3> irradiance;           ///< W/m^2 along the shading normal, stored part
+    std::vector<float> sh;                  ///< [count][9] luminance of incident radiance, tangent frame
+    std::vector<float> sh_rgb;              ///< [count][27] if kept
+    std::vector<float> standard_error;      ///< of the irradiance's luminance, W/m^2
+    std::vector<float> samples;             ///< gather rays
+    std::vector<float> inside;              ///< share of rays that met the inside of a solid close by
     std::vector<std::vector<Vec3>> bounces; ///< irradiance of every bounce, all lights, if kept
-    std::vector<Vec3> source;           ///< irradiance of all lights and bounces that the final gather reflected
+    std::vector<Vec3> source;               ///< irradiance of all lights and bounces that the final gather reflected
 
-    std::vector<double> bounce_means;   ///< mean luminance of each bounce's irradiance
-    TermResult terms;                       ///< light of every term but the base, which the arrays above hold
+    std::vector<double> bounce_means; ///< mean luminance of each bounce's irradiance
+    TermResult terms;                 ///< light of every term but the base, which the arrays above hold
 
-    uint32_t bright_texels = 0;         ///< aimed at by the final gather
-    float error_calibration = 1.0f;     ///< measured standard error over the strata estimate
-    bool time_limited = false;          ///< the time limit, not the target, set the ray counts
+    uint32_t bright_texels = 0;     ///< aimed at by the final gather
+    float error_calibration = 1.0f; ///< measured standard error over the strata estimate
+    bool time_limited = false;      ///< the time limit, not the target, set the ray counts
 };
 
 /// Runs the transport passes over all receivers. Throws Cancelled.
@@ -49,14 +49,16 @@ private:
     void final_gather(const std::vector<RayPlan>& plan);
     void calibrate_error(const std::vector<RayPlan>& plan);
     bool gathers() const;
-    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_}; }
+    GatherScene final_scene() const {
+        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
+    }
 
     GatherScene s_;
     ajar_settings settings_;
     ThreadPool& pool_;
     Progress& progress_;
     BakeResult result_;
-    std::vector<Vec3> current_;  ///< irradiance of the bounce in hand
+    std::vector<Vec3> current_; ///< irradiance of the bounce in hand
     std::unique_ptr<EmitterSet> final_emitters_;
     std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees; w = TexelFlag bits
 };

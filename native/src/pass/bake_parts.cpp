@@ -26,7 +26,8 @@ float dark_level(const std::vector<PilotResult>& pilot) {
 } // namespace
 
 bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
-    return receivers.shares[a] != 0 && receivers.shares[b] != 0 && glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
+    return receivers.shares[a] != 0 && receivers.shares[b] != 0 &&
+           glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
 }
 
 BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
@@ -37,7 +38,8 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
     const auto local = static_cast<uint32_t>(receivers.texel[r] - page.first_texel);
     const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = Vec2(local % page.width, local / page.width) + 0.5f - uv[0];
     const float det = a.x * b.y - a.y * b.x;
-    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin, eb = scene.positions[t.vertex[2]] - origin;
+    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin,
+               eb = scene.positions[t.vertex[2]] - origin;
     BrightTexel out;
     out.texel = receivers.texel[r];
     out.edge_x = (ea * b.y - eb * a.y) / det;
@@ -67,16 +69,23 @@ Tile pilot_part(const Tile& tile, uint32_t index) {
     return {tile.first + skip, std::min(kPilotReceivers, tile.count)};
 }
 
-std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays, const ajar_settings& s, bool gathers) {
+std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
+                                    const ajar_settings& s, bool gathers) {
     const float floor = dark_level(pilot);
     std::vector<RayPlan> plan(pilot.size());
     for (size_t i = 0; i < pilot.size(); ++i) {
         // The neighbours in tile order pool with the tile itself: eight receivers are few.
-        const PilotResult &before = pilot[i > 0 ? i - 1 : i], &after = pilot[i + 1 < pilot.size() ? i + 1 : i], &here = pilot[i];
-        const auto pooled = [&](float PilotResult::*v) { return std::max(0.25f * (before.*v + after.*v) + 0.5f * here.*v, here.*v); };
+        const PilotResult &before = pilot[i > 0 ? i - 1 : i], &after = pilot[i + 1 < pilot.size() ? i + 1 : i],
+                          &here = pilot[i];
+        const auto pooled = [&](float PilotResult::*v) {
+            return std::max(0.25f * (before.*v + after.*v) + 0.5f * here.*v, here.*v);
+        };
         const float allowed = s.noise_target * (here.level + floor), budget = 0.5f * allowed * allowed + 1e-30f;
-        if (gathers) plan[i].gather = power_of_two(float(pilot_rays.gather) * pooled(&PilotResult::gather_variance) / budget, 64, std::max(s.samples, 64u));
-        plan[i].direct = power_of_two(float(pilot_rays.direct) * pooled(&PilotResult::direct_variance) / budget, std::min(16u, s.direct_samples), std::max(s.direct_samples, 1u));
+        if (gathers)
+            plan[i].gather = power_of_two(float(pilot_rays.gather) * pooled(&PilotResult::gather_variance) / budget, 64,
+                                          std::max(s.samples, 64u));
+        plan[i].direct = power_of_two(float(pilot_rays.direct) * pooled(&PilotResult::direct_variance) / budget,
+                                      std::min(16u, s.direct_samples), std::max(s.direct_samples, 1u));
     }
     return plan;
 }

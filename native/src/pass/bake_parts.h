@@ -3,14 +3,14 @@
 
 // What the passes with and without elements share.
 
+#include <vector>
+
 #include "base/hash.h"
 #include "transport/direct.h"
 
-#include <vector>
-
 namespace ajar {
 
-inline constexpr uint32_t kSourceSamples = 16;  ///< emitter samples per receiver that feed the bounces
+inline constexpr uint32_t kSourceSamples = 16; ///< emitter samples per receiver that feed the bounces
 inline constexpr uint32_t kPilotRays = 64;
 inline constexpr uint32_t kPilotReceivers = 8;  ///< of each tile
 inline constexpr uint32_t kCalibrationStep = 4; ///< every n-th tile is estimated twice
@@ -25,8 +25,8 @@ struct RayPlan {
 
 /// What the pilot rays of a tile found, pooled over its receivers.
 struct PilotResult {
-    float level = 0.0f;            ///< mean luminance of the irradiance
-    float gather_variance = 0.0f;  ///< of a receiver's estimate at the pilot's ray counts
+    float level = 0.0f;           ///< mean luminance of the irradiance
+    float gather_variance = 0.0f; ///< of a receiver's estimate at the pilot's ray counts
     float direct_variance = 0.0f;
 };
 
@@ -45,7 +45,8 @@ Tile pilot_part(const Tile& tile, uint32_t index);
 
 /// Ray counts per tile that reach the noise target by the pilot's pooled variance, within the
 /// counts of settings (algorithms.md 10.3, 10.4).
-std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays, const ajar_settings& settings, bool gathers);
+std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
+                                    const ajar_settings& settings, bool gathers);
 
 /// Halves ray counts until the rest of the bake fits into seconds; true if it had to.
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds);

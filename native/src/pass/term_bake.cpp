@@ -5,17 +5,19 @@ namespace ajar {
 
 namespace {
 
-constexpr uint32_t kUnseenSamples = 1;      ///< per receiver that look for a light set no visibility ray met
+constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
-constexpr float kPruneShare = 0.1f;         ///< of a term's threshold that its light must reach to be reflected
-constexpr float kPlanShare = 0.1f;          ///< terms below this share of a tile's light do not drive its ray counts
+constexpr float kPruneShare = 0.1f; ///< of a term's threshold that its light must reach to be reflected
+constexpr float kPlanShare = 0.1f;  ///< terms below this share of a tile's light do not drive its ray counts
 
 uint32_t order_of(uint32_t combinations) {
     return combinations == AJAR_COMBINATIONS_NONE ? 1 : combinations == AJAR_COMBINATIONS_AUTO ? kAutoOrder : kAllOrder;
 }
 
 /// Factor from gather sums to irradiance; a ratio estimator as in the plain bake.
-float gather_scale(const TermSums& s, uint32_t lane) { return s.cosine_sum(lane) > 0.0f ? kPi / s.cosine_sum(lane) : 0.0f; }
+float gather_scale(const TermSums& s, uint32_t lane) {
+    return s.cosine_sum(lane) > 0.0f ? kPi / s.cosine_sum(lane) : 0.0f;
+}
 
 uint32_t find_slot(const TermSums& sums, const Term& term) { return sums.find(term); }
 
@@ -36,8 +38,12 @@ struct TermBaker::Estimate {
             direct_slot.push_back(find_slot(direct, t));
         }
     }
-    const TermSums::Block* gathered(size_t term, uint32_t lane) const { return gather_slot[term] != TermSums::kNone ? &gather.block(gather_slot[term], lane) : nullptr; }
-    const TermSums::Block* sampled(size_t term, uint32_t lane) const { return direct_slot[term] != TermSums::kNone ? &direct.block(direct_slot[term], lane) : nullptr; }
+    const TermSums::Block* gathered(size_t term, uint32_t lane) const {
+        return gather_slot[term] != TermSums::kNone ? &gather.block(gather_slot[term], lane) : nullptr;
+    }
+    const TermSums::Block* sampled(size_t term, uint32_t lane) const {
+        return direct_slot[term] != TermSums::kNone ? &direct.block(direct_slot[term], lane) : nullptr;
+    }
     Vec3 irradiance(size_t term, uint32_t lane) const {
         Vec3 e(0.0f);
         if (const auto* b = gathered(term, lane)) e += b->color() * gather_scale(gather, lane);
@@ -57,7 +63,9 @@ struct TermBaker::Estimate {
         for (size_t t = 0; t < terms.size(); ++t) e += irradiance(t, lane);
         return e;
     }
-    double total_variance(uint32_t lane) const { return gather_variance(gather.total_squares(lane)) + direct.total_squares(lane); }
+    double total_variance(uint32_t lane) const {
+        return gather_variance(gather.total_squares(lane)) + direct.total_squares(lane);
+    }
 };
 
 TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress)
@@ -66,7 +74,9 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
 }
 
-bool TermBaker::gathers() const { return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0; }
+bool TermBaker::gathers() const {
+    return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
+}
 
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const {
     TileRows rows;
@@ -81,12 +91,14 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
         const auto [begin, end] = block_of(s_.scene, s_.receivers, tile, r);
         std::vector<std::pair<uint32_t, float>> mates; // lane and factor
         for (uint32_t q = begin; q < end; ++q)
-            if (q == r || may_share(s_.receivers, q, r)) mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
+            if (q == r || may_share(s_.receivers, q, r))
+                mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
         const size_t before = rows.entries.size();
         for (uint32_t t = 0; t < rows.terms.size(); ++t) {
             Vec3 e(0.0f);
             if (in_gather[t] != TermSums::kNone)
-                for (const auto& [q, factor] : mates) e += gather.block(in_gather[t], q).color() * (factor / static_cast<float>(mates.size()));
+                for (const auto& [q, factor] : mates)
+                    e += gather.block(in_gather[t], q).color() * (factor / static_cast<float>(mates.size()));
             if (in_direct[t] != TermSums::kNone) e += direct->block(in_direct[t], lane).color();
             if (e != Vec3(0.0f)) rows.entries.push_back({t, e});
         }
@@ -113,7 +125,8 @@ ReceiverRows TermBaker::prune(const ReceiverRows& rows) const {
     kept.first.reserve(rows.first.size());
     for (uint32_t r = 0; r + 1 < rows.first.size(); ++r) {
         for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e)
-            if (table_[e->term].is_base() || std::abs(luminance(e->color)) > kPruneShare * threshold_[e->term]) kept.entries.push_back(*e);
+            if (table_[e->term].is_base() || std::abs(luminance(e->color)) > kPruneShare * threshold_[e->term])
+                kept.entries.push_back(*e);
         kept.first.push_back(kept.entries.size());
     }
     return kept;
@@ -126,10 +139,12 @@ void TermBaker::direct_source() {
         const Tile& tile = s_.receivers.tiles[i];
         const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
         DirectGroups groups(s_.emitters, LightRoles::all, all_sets_);
-        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kUnseenSamples, hash_combine(seed, s_.receivers.texel[tile.first]));
+        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kUnseenSamples,
+                                     hash_combine(seed, s_.receivers.texel[tile.first]));
         TermSums direct(table_), gather(table_);
         const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
-        rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, nullptr, table_, limits_, direct);
+        rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, nullptr, table_, limits_,
+                              direct);
         if (rays_needed) {
             GatherOptions o;
             o.samples = gather_rays;
@@ -164,7 +179,8 @@ EmitterSet TermBaker::find_bright_texels() {
     std::vector<BrightTexel> bright;
     if (settings_.bounces > 0) {
         std::vector<float> level(s_.receivers.count());
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(source_.total(r) * s_.receivers.albedo[r]) * kInvPi;
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r)
+            level[r] = luminance(source_.total(r) * s_.receivers.albedo[r]) * kInvPi;
         for (const uint32_t r : bright_receivers(s_.receivers, level)) {
             bright.push_back(bright_texel(s_.scene, s_.receivers, r));
             bright.back().radiance = source_.total(r) * s_.receivers.albedo[r] * kInvPi;
@@ -179,7 +195,8 @@ EmitterSet TermBaker::find_bright_texels() {
 /// of its mean indirect light where it lights directly (Seyb et al. 2020, section 3.2). A door, toggle
 /// or combination changes the light of its set, or of the base, and is measured against that.
 void TermBaker::find_thresholds() {
-    std::vector<double> indirect(table_.count(), 0.0), lit(table_.count(), 0.0), all(table_.count(), 0.0), met(table_.count(), 0.0);
+    std::vector<double> indirect(table_.count(), 0.0), lit(table_.count(), 0.0), all(table_.count(), 0.0),
+        met(table_.count(), 0.0);
     for (uint32_t r = 0; r + 1 < source_.first.size(); ++r)
         for (const TermColor* e = source_.begin(r); e != source_.end(r); ++e) {
             const Vec3 direct = direct_.of(r, e->term);
@@ -193,7 +210,9 @@ void TermBaker::find_thresholds() {
     for (uint32_t t = 0; t < table_.count(); ++t) {
         const uint32_t changed = table_.find(Term(table_[t].set()));
         if (changed == TermTable::kUnknown) continue;
-        const double mean = indirect[changed] > 0.0 ? indirect[changed] / lit[changed] : met[changed] > 0.0 ? all[changed] / met[changed] : 0.0;
+        const double mean = indirect[changed] > 0.0 ? indirect[changed] / lit[changed]
+                            : met[changed] > 0.0    ? all[changed] / met[changed]
+                                                    : 0.0;
         threshold_[t] = settings_.term_threshold * static_cast<float>(mean);
     }
 }
@@ -206,7 +225,8 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
     const bool is_set = term.order() == 1 && term.set() != kNoElement;
     if (is_set && direct_.of(receiver, id) != Vec3(0.0f)) return true;
     const float level = std::abs(luminance(light.irradiance));
-    return level > threshold_[id] && (term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL || level > light.standard_error);
+    return level > threshold_[id] &&
+           (term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL || level > light.standard_error);
 }
 
 /// Light sets that shine on the tile directly, as the source pass saw it.
@@ -225,9 +245,11 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
     t.plan = plan;
     const GatherScene scene = final_scene();
     DirectGroups groups(scene.emitters, LightRoles::stored, sets_of(tile));
-    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct, hash_combine(seed, s_.receivers.texel[tile.first]));
+    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct,
+                                 hash_combine(seed, s_.receivers.texel[tile.first]));
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
-    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare}, seed, rows, table_, limits_, t.direct);
+    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare}, seed, rows, table_,
+                          limits_, t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
         o.samples = plan.gather;
@@ -279,10 +301,14 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
-    pool_.for_each(count, progress_, [&](size_t i) { pilot[i] = pilot_tile(s_.receivers.tiles[i], small, static_cast<uint32_t>(i)); });
-    const double seconds_per_ray = (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    pool_.for_each(count, progress_,
+                   [&](size_t i) { pilot[i] = pilot_tile(s_.receivers.tiles[i], small, static_cast<uint32_t>(i)); });
+    const double seconds_per_ray =
+        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
     if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());
-    if (timed) result_.time_limited = limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
+    if (timed)
+        result_.time_limited =
+            limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
     return plan;
 }
 
@@ -290,8 +316,8 @@ std::vector<RayPlan> TermBaker::plan_rays() {
 struct FinalTile {
     std::vector<Term> terms;
     std::vector<uint32_t> count;
-    std::vector<TermLight> light;           ///< term = index into terms
-    std::vector<double> kept, dropped;      ///< luminance per term
+    std::vector<TermLight> light;      ///< term = index into terms
+    std::vector<double> kept, dropped; ///< luminance per term
 };
 
 void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate& t, FinalTile& out) {
@@ -307,7 +333,8 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
         for (uint32_t term = 0; term < t.terms.size(); ++term) {
             TermLight light{term, t.irradiance(term, lane), {}, static_cast<float>(std::sqrt(t.variance(term, lane)))};
             const auto *g = t.gathered(term, lane), *d = t.sampled(term, lane);
-            for (int c = 0; c < kShCount; ++c) light.sh[c] = (g != nullptr ? g->sh[c] * per_ray : 0.0f) + (d != nullptr ? d->sh[c] : 0.0f);
+            for (int c = 0; c < kShCount; ++c)
+                light.sh[c] = (g != nullptr ? g->sh[c] * per_ray : 0.0f) + (d != nullptr ? d->sh[c] : 0.0f);
             if (t.terms[term].is_base()) {
                 result_.irradiance[r] = light.irradiance;
                 std::copy(light.sh, light.sh + kShCount, &result_.sh[r * kShCount]);
@@ -334,7 +361,8 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
     for (FinalTile& t : tiles) {
         std::vector<uint32_t> number;
         for (size_t i = 0; i < t.terms.size(); ++i) {
-            number.push_back(static_cast<uint32_t>(std::lower_bound(out.terms.begin(), out.terms.end(), t.terms[i]) - out.terms.begin()));
+            number.push_back(static_cast<uint32_t>(std::lower_bound(out.terms.begin(), out.terms.end(), t.terms[i]) -
+                                                   out.terms.begin()));
             if (t.terms[i].is_base()) continue;
             kept[number[i]] += t.kept[i];
             dropped[number[i]] += t.dropped[i];
@@ -349,7 +377,8 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
         }
         t = {};
     }
-    for (size_t i = 0; i < kept.size(); ++i) out.discarded.push_back(static_cast<float>(dropped[i] / std::max(kept[i] + dropped[i], 1e-30)));
+    for (size_t i = 0; i < kept.size(); ++i)
+        out.discarded.push_back(static_cast<float>(dropped[i] / std::max(kept[i] + dropped[i], 1e-30)));
 }
 
 void TermBaker::final_gather(const std::vector<RayPlan>& plan) {
@@ -371,19 +400,23 @@ void TermBaker::final_gather(const std::vector<RayPlan>& plan) {
 void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
     const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
     std::vector<Vec2> parts(count, Vec2(0.0f));
-    pool_.for_each(count, progress_, [&](size_t k) {
-        const size_t i = k * kCalibrationStep;
-        const Tile tile{s_.receivers.tiles[i].first, std::min(kPilotReceivers, s_.receivers.tiles[i].count)};
-        const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)), b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
-        for (uint32_t lane = 0; lane < tile.count; ++lane) {
-            const float la = luminance(a.total(lane)), lb = luminance(b.total(lane)), level = 0.5f * (la + lb);
-            if (!(level > 0.0f)) continue;
-            const double se = std::sqrt(a.total_variance(lane)) / level;
-            if (se < 1e-5) continue;
-            const float d = (la - lb) / level;
-            parts[k] += Vec2(0.5f * d * d, static_cast<float>(se * se));
-        }
-    }, false);
+    pool_.for_each(
+        count, progress_,
+        [&](size_t k) {
+            const size_t i = k * kCalibrationStep;
+            const Tile tile{s_.receivers.tiles[i].first, std::min(kPilotReceivers, s_.receivers.tiles[i].count)};
+            const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)),
+                           b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
+            for (uint32_t lane = 0; lane < tile.count; ++lane) {
+                const float la = luminance(a.total(lane)), lb = luminance(b.total(lane)), level = 0.5f * (la + lb);
+                if (!(level > 0.0f)) continue;
+                const double se = std::sqrt(a.total_variance(lane)) / level;
+                if (se < 1e-5) continue;
+                const float d = (la - lb) / level;
+                parts[k] += Vec2(0.5f * d * d, static_cast<float>(se * se));
+            }
+        },
+        false);
     double twin = 0.0, strata = 0.0;
     for (const Vec2& p : parts) twin += p.x, strata += p.y;
     if (count < 8 || !(strata > 0.0)) return;
@@ -397,7 +430,8 @@ BakeResult TermBaker::run() {
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     for (uint32_t b = 1; b < settings_.bounces; ++b) bounce(b);
-    radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_) : source_, s_.receivers, s_.scene.texel_count());
+    radiance_ =
+        radiance_rows(settings_.term_threshold > 0.0f ? prune(source_) : source_, s_.receivers, s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     const std::vector<RayPlan> plan = plan_rays();

@@ -35,7 +35,9 @@ private:
     void calibrate_error(const std::vector<RayPlan>& plan);
     bool gathers() const;
     std::vector<uint32_t> sets_of(const Tile& tile) const;
-    GatherScene final_scene() const { return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_}; }
+    GatherScene final_scene() const {
+        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
+    }
 
     GatherScene s_;
     ajar_settings settings_;

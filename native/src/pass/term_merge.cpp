@@ -42,8 +42,10 @@ ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table) {
         size_t next = 0;
         for (const uint32_t count : t.count) {
             const size_t begin = rows.entries.size();
-            for (uint32_t k = 0; k < count; ++k, ++next) rows.entries.push_back({number[t.entries[next].term], t.entries[next].color});
-            std::sort(rows.entries.begin() + static_cast<ptrdiff_t>(begin), rows.entries.end(), [](const TermColor& a, const TermColor& b) { return a.term < b.term; });
+            for (uint32_t k = 0; k < count; ++k, ++next)
+                rows.entries.push_back({number[t.entries[next].term], t.entries[next].color});
+            std::sort(rows.entries.begin() + static_cast<ptrdiff_t>(begin), rows.entries.end(),
+                      [](const TermColor& a, const TermColor& b) { return a.term < b.term; });
             rows.first.push_back(rows.entries.size());
         }
         t = {};
@@ -57,8 +59,10 @@ ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b) {
     for (uint32_t r = 0; r + 1 < a.first.size(); ++r) {
         const TermColor *i = a.begin(r), *j = b.begin(r);
         while (i != a.end(r) || j != b.end(r)) {
-            const bool left = j == b.end(r) || (i != a.end(r) && i->term <= j->term), right = i == a.end(r) || (j != b.end(r) && j->term <= i->term);
-            sum.entries.push_back({left ? i->term : j->term, (left ? i->color : Vec3(0.0f)) + (right ? j->color : Vec3(0.0f))});
+            const bool left = j == b.end(r) || (i != a.end(r) && i->term <= j->term),
+                       right = i == a.end(r) || (j != b.end(r) && j->term <= i->term);
+            sum.entries.push_back(
+                {left ? i->term : j->term, (left ? i->color : Vec3(0.0f)) + (right ? j->color : Vec3(0.0f))});
             i += left;
             j += right;
         }
@@ -77,7 +81,8 @@ TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& 
         if (r != kNoReceiver) {
             rows.flags[t] = receivers.cut[r] != 0 ? kTexelCut : 0;
             const Vec3 reflected = receivers.albedo[r] * kInvPi;
-            for (const TermColor* e = irradiance.begin(r); e != irradiance.end(r); ++e) rows.entries.push_back({e->term, e->color * reflected});
+            for (const TermColor* e = irradiance.begin(r); e != irradiance.end(r); ++e)
+                rows.entries.push_back({e->term, e->color * reflected});
         }
         rows.first[t + 1] = rows.entries.size();
     }

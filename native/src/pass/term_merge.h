@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "receiver/lightmap.h"
 #include "transport/term_sums.h"
-
-#include <vector>
 
 namespace ajar {
 
 /// Sparse rows of one tile, before its terms have numbers that all tiles share.
 struct TileRows {
     std::vector<Term> terms;
-    std::vector<uint32_t> count;     ///< [receivers of the tile] entries of each
-    std::vector<TermColor> entries;  ///< term = index into terms
+    std::vector<uint32_t> count;    ///< [receivers of the tile] entries of each
+    std::vector<TermColor> entries; ///< term = index into terms
 };
 
 /// Sparse rows over all receivers: irradiance of each term.
 struct ReceiverRows {
-    std::vector<uint64_t> first{0};  ///< [receivers + 1]
+    std::vector<uint64_t> first{0}; ///< [receivers + 1]
     std::vector<TermColor> entries;
 
     const TermColor* begin(uint32_t r) const { return entries.data() + first[r]; }

@@ -19,7 +19,8 @@ std::vector<std::pair<int, int>> spiral(int radius) {
 
 } // namespace
 
-std::vector<uint32_t> nearest_known(const std::vector<Page>& pages, const std::vector<uint8_t>& known, uint32_t radius) {
+std::vector<uint32_t> nearest_known(const std::vector<Page>& pages, const std::vector<uint8_t>& known,
+                                    uint32_t radius) {
     std::vector<uint32_t> source(known.size());
     const auto offsets = spiral(static_cast<int>(radius));
     for (const Page& page : pages) {

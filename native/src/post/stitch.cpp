@@ -5,7 +5,7 @@ namespace ajar {
 
 namespace {
 
-constexpr float kLambda = 0.1f;   ///< pull towards the baked value; smaller darkens thin charts
+constexpr float kLambda = 0.1f; ///< pull towards the baked value; smaller darkens thin charts
 constexpr int kIterations = 60;
 constexpr double kTolerance = 1e-8; ///< of the squared residual
 
@@ -98,7 +98,10 @@ std::vector<Vec3> SeamSolver::System::change(const std::vector<Vec3>& x0) const 
     return x;
 }
 
-SeamSolver::SeamSolver(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable) : system_(std::make_unique<System>()) { system_->build(seams, usable); }
+SeamSolver::SeamSolver(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable)
+    : system_(std::make_unique<System>()) {
+    system_->build(seams, usable);
+}
 
 SeamSolver::~SeamSolver() = default;
 
@@ -108,10 +111,12 @@ void SeamSolver::solve(std::vector<Vec3>& value, bool may_be_negative) const {
     std::vector<Vec3> x0(system_->texel.size());
     for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[system_->texel[i]];
     const std::vector<Vec3> change = system_->change(x0);
-    for (size_t i = 0; i < x0.size(); ++i) value[system_->texel[i]] = may_be_negative ? x0[i] + change[i] : glm::max(x0[i] + change[i], Vec3(0.0f));
+    for (size_t i = 0; i < x0.size(); ++i)
+        value[system_->texel[i]] = may_be_negative ? x0[i] + change[i] : glm::max(x0[i] + change[i], Vec3(0.0f));
 }
 
-uint64_t stitch_seams(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable, std::vector<Vec3>& value) {
+uint64_t stitch_seams(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable,
+                      std::vector<Vec3>& value) {
     const SeamSolver solver(seams, usable);
     if (solver.points() != 0) solver.solve(value);
     return solver.points();

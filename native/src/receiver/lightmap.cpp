@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "receiver/lightmap.h"
 
-#include "base/hash.h"
-#include "base/owen_sobol.h"
-
 #include <atomic>
 #include <numeric>
+
+#include "base/hash.h"
+#include "base/owen_sobol.h"
 
 namespace ajar {
 
@@ -30,7 +30,8 @@ TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, uint
     const auto local = static_cast<uint32_t>(texel - page.first_texel);
     const uint32_t x = local % page.width, y = local / page.width;
     const uint32_t tiles_x = (page.width + kTileEdge - 1) / kTileEdge;
-    return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge, part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
+    return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge,
+            part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
 }
 
 /// Columns of the nearly square grid of count cells; count is 1..16.
@@ -81,7 +82,8 @@ void Builder::order() {
     std::vector<uint32_t> first_tile(scene.pages.size(), 0);
     for (size_t p = 1; p < scene.pages.size(); ++p) {
         const Page& before = scene.pages[p - 1];
-        first_tile[p] = first_tile[p - 1] + ((before.width + kTileEdge - 1) / kTileEdge) * ((before.height + kTileEdge - 1) / kTileEdge);
+        first_tile[p] = first_tile[p - 1] +
+                        ((before.width + kTileEdge - 1) / kTileEdge) * ((before.height + kTileEdge - 1) / kTileEdge);
     }
     const auto& f = coverage.fragments;
     for (uint32_t begin = 0, end; begin < f.size(); begin = end) {
@@ -93,7 +95,8 @@ void Builder::order() {
         return a.key.tile != b.key.tile ? a.key.tile < b.key.tile : a.key.morton < b.key.morton;
     });
     for (size_t i = 0; i < entries.size(); ++i) {
-        if (i == 0 || entries[i].key.tile != entries[i - 1].key.tile) out.tiles.push_back({static_cast<uint32_t>(i), 0});
+        if (i == 0 || entries[i].key.tile != entries[i - 1].key.tile)
+            out.tiles.push_back({static_cast<uint32_t>(i), 0});
         ++out.tiles.back().count;
         runs.emplace_back(entries[i].begin, entries[i].end);
         out.texel.push_back(f[entries[i].begin].texel);
@@ -112,7 +115,8 @@ TexelPoint Builder::point(uint32_t receiver, Vec2 u) const {
     u.x = std::min(left / f.area, 0x1.fffffep-1f);
     const Vec2 low = texel_corner(f);
     const float margin = f.ring ? 0.5f : 0.0f;
-    return on_triangle(f.triangle, clip_to_box(texel_triangle(scene, f.triangle), low - margin, low + 1.0f + margin).sample(u));
+    return on_triangle(f.triangle,
+                       clip_to_box(texel_triangle(scene, f.triangle), low - margin, low + 1.0f + margin).sample(u));
 }
 
 Vec2 Builder::texel_corner(const Fragment& f) const {
@@ -135,11 +139,13 @@ TexelPoint Builder::sub_texel(uint32_t receiver, uint32_t k, uint32_t base) cons
     const auto [begin, end] = runs[receiver];
     const uint32_t columns = grid_columns(out.positions_per_texel), rows = out.positions_per_texel / columns;
     if (out.whole[receiver] == 0) return point(receiver, owen_sobol(k, base));
-    const Vec2 cell((static_cast<float>(k % columns) + 0.5f) / static_cast<float>(columns), (static_cast<float>(k / columns) + 0.5f) / static_cast<float>(rows));
+    const Vec2 cell((static_cast<float>(k % columns) + 0.5f) / static_cast<float>(columns),
+                    (static_cast<float>(k / columns) + 0.5f) / static_cast<float>(rows));
     const Vec2 p = texel_corner(coverage.fragments[begin]) + cell;
     uint32_t best = begin;
     for (uint32_t i = begin; i < end; ++i)
-        if (depth_inside(coverage.fragments[i].triangle, p) > depth_inside(coverage.fragments[best].triangle, p)) best = i;
+        if (depth_inside(coverage.fragments[i].triangle, p) > depth_inside(coverage.fragments[best].triangle, p))
+            best = i;
     return on_triangle(coverage.fragments[best].triangle, p);
 }
 
@@ -170,7 +176,8 @@ Vec3 Builder::smooth_position(const TexelPoint& p) const {
 }
 
 Vec3 Builder::shading_normal(const TexelPoint& p) const {
-    const Vec3 n = scene.corner_normal(p.triangle, 0) * (1.0f - p.u - p.v) + scene.corner_normal(p.triangle, 1) * p.u + scene.corner_normal(p.triangle, 2) * p.v;
+    const Vec3 n = scene.corner_normal(p.triangle, 0) * (1.0f - p.u - p.v) + scene.corner_normal(p.triangle, 1) * p.u +
+                   scene.corner_normal(p.triangle, 2) * p.v;
     return normalize_or(n, scene.geometric_normal(p.triangle));
 }
 
@@ -240,10 +247,13 @@ void Builder::set_frame(uint32_t r) {
     const Triangle& t = scene.triangles[triangle];
     const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0];
     const float det = a.x * b.y - a.y * b.x;
-    const Vec3 ea = scene.positions[t.vertex[1]] - scene.positions[t.vertex[0]], eb = scene.positions[t.vertex[2]] - scene.positions[t.vertex[0]];
+    const Vec3 ea = scene.positions[t.vertex[1]] - scene.positions[t.vertex[0]],
+               eb = scene.positions[t.vertex[2]] - scene.positions[t.vertex[0]];
     const Vec3 du = (ea * b.y - eb * a.y) / det, dv = (eb * a.x - ea * b.x) / det;
     Vec3 normal(0.0f);
-    for (uint32_t k = 0; k < 4; ++k) normal += shading_normal(point(r, {(static_cast<float>(k) + 0.5f) / 4.0f, static_cast<float>(k & 1) * 0.5f + 0.25f}));
+    for (uint32_t k = 0; k < 4; ++k)
+        normal +=
+            shading_normal(point(r, {(static_cast<float>(k) + 0.5f) / 4.0f, static_cast<float>(k & 1) * 0.5f + 0.25f}));
     const Vec3 n = normalize_or(normal, scene.geometric_normal(triangle));
     out.triangle[r] = triangle;
     out.frame[r] = frame_from_tangent(n, du, glm::dot(glm::cross(n, du), dv) < 0.0f ? -1.0f : 1.0f);
@@ -258,7 +268,8 @@ void Builder::set_frame(uint32_t r) {
 void Builder::set_albedo(uint32_t r) {
     Vec3 sum(0.0f);
     for (int k = 0; k < kAlbedoSamples; ++k) {
-        const TexelPoint p = point(r, {(static_cast<float>(k) + 0.5f) / kAlbedoSamples, unit_float(hash_combine(out.texel[r], k))});
+        const TexelPoint p =
+            point(r, {(static_cast<float>(k) + 0.5f) / kAlbedoSamples, unit_float(hash_combine(out.texel[r], k))});
         sum += scene.surface(p.triangle, p.u, p.v).reflectance;
     }
     out.albedo[r] = sum / static_cast<float>(kAlbedoSamples);
@@ -283,16 +294,25 @@ void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector
     const auto& f = coverage.fragments;
     for (size_t begin = 0, end; begin < f.size(); begin = end) {
         float area = 0.0f;
-        for (end = begin; end < f.size() && f[end].texel == f[begin].texel; ++end) area += f[end].ring ? 0.0f : f[end].area;
+        for (end = begin; end < f.size() && f[end].texel == f[begin].texel; ++end)
+            area += f[end].ring ? 0.0f : f[end].area;
         if (area < kOverlapArea) continue;
         for (size_t i = begin; i < end; ++i)
-            if (i == begin || scene.triangles[f[i].triangle].instance != scene.triangles[f[i - 1].triangle].instance) ++overlaps[scene.triangles[f[i].triangle].instance];
+            if (i == begin || scene.triangles[f[i].triangle].instance != scene.triangles[f[i - 1].triangle].instance)
+                ++overlaps[scene.triangles[f[i].triangle].instance];
     }
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const std::string& name = scene.instances[i].name;
-        if (overlaps[i] != 0) warnings.push_back({name, "lightmap UVs overlap in " + std::to_string(overlaps[i]) + " texels, which share their light; unwrap it again with Prepare UVs"});
-        if (coverage.outside_triangles[i] != 0) warnings.push_back({name, std::to_string(coverage.outside_triangles[i]) + " triangles have lightmap UVs outside the page and are not lit there; unwrap it again with Prepare UVs"});
-        if (coverage.flat_uv_triangles[i] != 0) warnings.push_back({name, std::to_string(coverage.flat_uv_triangles[i]) + " triangles have no area in the lightmap UVs and store no light"});
+        if (overlaps[i] != 0)
+            warnings.push_back({name, "lightmap UVs overlap in " + std::to_string(overlaps[i]) +
+                                          " texels, which share their light; unwrap it again with Prepare UVs"});
+        if (coverage.outside_triangles[i] != 0)
+            warnings.push_back({name, std::to_string(coverage.outside_triangles[i]) +
+                                          " triangles have lightmap UVs outside the page and are not lit there; unwrap "
+                                          "it again with Prepare UVs"});
+        if (coverage.flat_uv_triangles[i] != 0)
+            warnings.push_back({name, std::to_string(coverage.flat_uv_triangles[i]) +
+                                          " triangles have no area in the lightmap UVs and store no light"});
     }
 }
 
@@ -305,13 +325,17 @@ void warn_about_albedo(const Snapshot& scene, const LightmapReceivers& receivers
         clamped[i] += max_component(receivers.albedo[r]) >= kMaxReflectance - 1e-4f;
     }
     for (size_t i = 0; i < all.size(); ++i)
-        if (2 * clamped[i] > all[i]) warnings.push_back({scene.instances[i].name, "reflects nearly all light; its reflectance is limited to 0.95, darken its material for a faithful bake"});
+        if (2 * clamped[i] > all[i])
+            warnings.push_back({scene.instances[i].name,
+                                "reflects nearly all light; its reflectance is limited to 0.95, darken its material "
+                                "for a faithful bake"});
 }
 
 } // namespace
 
 // Morton order keeps a block's receivers together.
-std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile, uint32_t r) {
+std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile,
+                                       uint32_t r) {
     const auto block = [&](uint32_t q) {
         const Page& page = scene.pages[scene.instance_of(receivers.triangle[q]).page];
         const auto local = static_cast<uint32_t>(receivers.texel[q] - page.first_texel);
@@ -324,8 +348,9 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
     return {begin, end};
 }
 
-LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, uint32_t positions_per_texel,
-                                 uint32_t seed, ThreadPool& pool, Progress& progress, std::vector<Warning>& warnings) {
+LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
+                                 uint32_t positions_per_texel, uint32_t seed, ThreadPool& pool, Progress& progress,
+                                 std::vector<Warning>& warnings) {
     Builder b{scene, tracer, coverage, hash_combine(seed, 0xa11ce5u), {}, {}, {}, {}};
     b.order();
     const size_t count = b.runs.size();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "accel/embree_scene.h"
 #include "base/parallel.h"
 #include "receiver/uv_raster.h"
-
-#include <vector>
 
 namespace ajar {
 
@@ -31,7 +31,8 @@ struct LightmapReceivers {
     std::vector<uint8_t> full;      ///< one triangle covers the whole texel
     std::vector<uint8_t> whole;     ///< the chart covers the whole texel
     std::vector<uint8_t> cut;       ///< a wall runs through the texel; its positions lie on one side of it
-    std::vector<uint8_t> shares;    ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
+    std::vector<uint8_t>
+        shares; ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
     std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
     std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
     uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
@@ -42,11 +43,13 @@ struct LightmapReceivers {
 };
 
 /// First and last + 1 receiver of the 2x2 block that r belongs to, inside its tile.
-std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile, uint32_t r);
+std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile,
+                                       uint32_t r);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
 /// (algorithms.md 9.1, 9.2, 9.4). Adds warnings about UVs to warnings.
-LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, uint32_t positions_per_texel,
-                                 uint32_t seed, ThreadPool& pool, Progress& progress, std::vector<Warning>& warnings);
+LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
+                                 uint32_t positions_per_texel, uint32_t seed, ThreadPool& pool, Progress& progress,
+                                 std::vector<Warning>& warnings);
 
 } // namespace ajar

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "receiver/lightmap.h"
-
 #include <array>
 #include <vector>
+
+#include "receiver/lightmap.h"
 
 namespace ajar {
 

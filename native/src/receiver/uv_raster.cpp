@@ -14,7 +14,8 @@ TexelPolygon clip(const TexelPolygon& in, int axis, float limit, float sign) {
         const Vec2 a = in.corner[i], b = in.corner[(i + 1) % in.count];
         const float da = sign * (a[axis] - limit), db = sign * (b[axis] - limit);
         if (da <= 0.0f) out.corner[out.count++] = a;
-        if ((da < 0.0f && db > 0.0f) || (da > 0.0f && db < 0.0f)) out.corner[out.count++] = a + (b - a) * (da / (da - db));
+        if ((da < 0.0f && db > 0.0f) || (da > 0.0f && db < 0.0f))
+            out.corner[out.count++] = a + (b - a) * (da / (da - db));
     }
     return out;
 }
@@ -31,8 +32,11 @@ struct TexelRange {
 };
 
 TexelRange texels_of(const std::array<Vec2, 3>& t, const Page& page, float margin) {
-    const Vec2 low = glm::min(t[0], glm::min(t[1], t[2])) - margin, high = glm::max(t[0], glm::max(t[1], t[2])) + margin;
-    const auto limit = [](float v, uint32_t size) { return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(size))); };
+    const Vec2 low = glm::min(t[0], glm::min(t[1], t[2])) - margin,
+               high = glm::max(t[0], glm::max(t[1], t[2])) + margin;
+    const auto limit = [](float v, uint32_t size) {
+        return static_cast<int>(std::clamp(v, 0.0f, static_cast<float>(size)));
+    };
     return {limit(std::floor(low.x), page.width), limit(std::floor(low.y), page.height),
             limit(std::ceil(high.x), page.width), limit(std::ceil(high.y), page.height)};
 }
@@ -125,19 +129,23 @@ Coverage rasterize(const Snapshot& scene, ThreadPool& pool, Progress& progress) 
         const auto t = texel_triangle(scene, i);
         const Page& page = scene.pages[instance.page];
         for (const Vec2& c : t)
-            if (c.x < -0.01f || c.y < -0.01f || c.x > static_cast<float>(page.width) + 0.01f || c.y > static_cast<float>(page.height) + 0.01f) {
+            if (c.x < -0.01f || c.y < -0.01f || c.x > static_cast<float>(page.width) + 0.01f ||
+                c.y > static_cast<float>(page.height) + 0.01f) {
                 ++out.outside_triangles[scene.triangles[i].instance];
                 break;
             }
-        if (!(std::abs(cross2(t[1] - t[0], t[2] - t[0])) > 1e-9f)) ++out.flat_uv_triangles[scene.triangles[i].instance];
-        else by_page[instance.page].push_back(i);
+        if (!(std::abs(cross2(t[1] - t[0], t[2] - t[0])) > 1e-9f))
+            ++out.flat_uv_triangles[scene.triangles[i].instance];
+        else
+            by_page[instance.page].push_back(i);
     }
     std::vector<std::vector<Fragment>> parts(scene.pages.size());
     pool.for_each(scene.pages.size(), progress, [&](size_t p) {
         PageRaster raster(scene, scene.pages[p]);
         for (const uint32_t t : by_page[p]) raster.add_squares(t);
         for (const uint32_t t : by_page[p]) raster.add_tents(t);
-        std::stable_sort(raster.fragments.begin(), raster.fragments.end(), [](const Fragment& a, const Fragment& b) { return a.texel < b.texel; });
+        std::stable_sort(raster.fragments.begin(), raster.fragments.end(),
+                         [](const Fragment& a, const Fragment& b) { return a.texel < b.texel; });
         parts[p] = std::move(raster.fragments);
     });
     for (auto& part : parts) out.fragments.insert(out.fragments.end(), part.begin(), part.end());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "base/math.h"
 #include "base/parallel.h"
 #include "scene/snapshot.h"
-
-#include <array>
-#include <vector>
 
 namespace ajar {
 

@@ -30,7 +30,9 @@ EmitterSet EmitterSet::with_bright_texels(std::vector<BrightTexel> texels) const
     out.bright_index_.assign(out.bright_.empty() ? 0 : scene_.texel_count(), kNone);
     const auto total = static_cast<uint32_t>(out.bright_.size());
     for (uint32_t first = 0, end; first < total; first = end) {
-        for (end = first + 1; end < total && end - first < kClusterTexels && joins(out.bright_[first], out.bright_[end]);) ++end;
+        for (end = first + 1;
+             end < total && end - first < kClusterTexels && joins(out.bright_[first], out.bright_[end]);)
+            ++end;
         out.add_bright_cluster(first, end - first);
     }
     return out;
@@ -92,8 +94,10 @@ void EmitterSet::weigh_for_anywhere() {
         const Emitter& m = emitters_[e];
         // A sun or sky lights everything, a lamp its surroundings: strength alone ranks them badly,
         // its square root keeps all of them in play until importance decides.
-        const float strength = m.kind == Kind::lamp ? luminance(scene_.lights[m.index].intensity) * std::max(scene_.lights[m.index].area, 1.0f)
-                               : m.kind == Kind::sky ? sky_->total() : clusters_[m.index].power;
+        const float strength = m.kind == Kind::lamp ? luminance(scene_.lights[m.index].intensity) *
+                                                          std::max(scene_.lights[m.index].area, 1.0f)
+                               : m.kind == Kind::sky ? sky_->total()
+                                                     : clusters_[m.index].power;
         anywhere_.push_back(sum += std::sqrt(strength));
     }
 }
@@ -106,7 +110,9 @@ uint32_t EmitterSet::pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, 
     float total = 0.0f, target = 0.0f;
     for (uint32_t i = 0; i < kAnywhereTries; ++i) {
         const float u = owen_sobol(i, seed).x;
-        const auto e = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(anywhere_.begin(), anywhere_.end(), u * anywhere_.back()) - anywhere_.begin(), static_cast<ptrdiff_t>(anywhere_.size()) - 1));
+        const auto e = static_cast<uint32_t>(std::min<ptrdiff_t>(
+            std::upper_bound(anywhere_.begin(), anywhere_.end(), u * anywhere_.back()) - anywhere_.begin(),
+            static_cast<ptrdiff_t>(anywhere_.size()) - 1));
         const float global = (anywhere_[e] - (e > 0 ? anywhere_[e - 1] : 0.0f)) / anywhere_.back();
         const float here = importance(e, p, n);
         const float weight = here / global;

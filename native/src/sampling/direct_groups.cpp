@@ -5,7 +5,8 @@
 
 namespace ajar {
 
-DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const std::vector<uint32_t>& sets) : emitters_(emitters), group_of_(emitters.count(), EmitterSet::kNone) {
+DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const std::vector<uint32_t>& sets)
+    : emitters_(emitters), group_of_(emitters.count(), EmitterSet::kNone) {
     const auto add = [&](uint32_t set) {
         std::vector<uint32_t> members = emitters.of_set(set);
         for (const uint32_t e : members) group_of_[e] = static_cast<uint32_t>(groups_.size());
@@ -15,7 +16,8 @@ DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const s
     for (const uint32_t set : sets) add(set);
 }
 
-uint64_t DirectGroups::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples, uint32_t unseen_samples, uint32_t seed) {
+uint64_t DirectGroups::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                             uint32_t samples, uint32_t unseen_samples, uint32_t seed) {
     uint64_t rays = 0;
     for (Group& g : groups_) {
         rays += g.choice.begin(tracer, receivers, tile, g.set == kNoElement ? seed : hash_combine(seed, g.set));

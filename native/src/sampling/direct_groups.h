@@ -10,7 +10,7 @@ namespace ajar {
 class DirectGroups {
 public:
     struct Group {
-        uint32_t set;     ///< light set or kNoElement
+        uint32_t set; ///< light set or kNoElement
         LightChoice choice;
         uint32_t samples; ///< per receiver
     };
@@ -20,7 +20,8 @@ public:
 
     /// Prepares for a tile and gives every group that can light it its samples; groups that no
     /// visibility ray of the tile saw get unseen_samples. Returns the rays traced.
-    uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples, uint32_t unseen_samples, uint32_t seed);
+    uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples,
+                   uint32_t unseen_samples, uint32_t seed);
 
     const std::vector<Group>& groups() const { return groups_; }
     /// Expected number of samples that a receiver spends on an emitter, for MIS.

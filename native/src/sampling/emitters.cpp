@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sampling/emitters.h"
 
-#include "base/owen_sobol.h"
-#include "sampling/warp.h"
-
 #include <limits>
 #include <map>
 #include <tuple>
+
+#include "base/owen_sobol.h"
+#include "sampling/warp.h"
 
 namespace ajar {
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kEmissionSamples = 16;
 constexpr uint32_t kClusterSize = 8;
-constexpr float kFlatBend = 0.25f;   ///< clusters more bent than this count as shining everywhere
+constexpr float kFlatBend = 0.25f;  ///< clusters more bent than this count as shining everywhere
 constexpr float kLargeShare = 0.2f; ///< of the scene's area; larger emitters are left to the gather
 
 bool two_sided(const Snapshot& s, uint32_t triangle) { return !s.materials[s.triangles[triangle].material].one_sided; }
@@ -30,7 +30,8 @@ float mean_emission(const Snapshot& s, uint32_t triangle) {
 
 } // namespace
 
-EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress) : scene_(scene), sky_(std::make_shared<SkySampler>(scene.sky)) {
+EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress)
+    : scene_(scene), sky_(std::make_shared<SkySampler>(scene.sky)) {
     for (uint32_t i = 0; i < scene.lights.size(); ++i)
         if (!scene.lights[i].dark()) emitters_.push_back({Kind::lamp, i});
     collect(pool, progress);
@@ -50,9 +51,12 @@ void EmitterSet::collect(ThreadPool& pool, Progress& progress) {
     for (uint32_t t = 0; t < scene_.triangles.size(); ++t)
         if (scene_.materials[scene_.triangles[t].material].emits) candidates.push_back(t);
     std::vector<float> mean(candidates.size());
-    pool.for_each((candidates.size() + 255) / 256, progress, [&](size_t block) {
-        for (size_t i = block * 256; i < std::min(candidates.size(), block * 256 + 256); ++i) mean[i] = mean_emission(scene_, candidates[i]);
-    }, false);
+    pool.for_each((candidates.size() + 255) / 256, progress,
+                  [&](size_t block) {
+                      for (size_t i = block * 256; i < std::min(candidates.size(), block * 256 + 256); ++i)
+                          mean[i] = mean_emission(scene_, candidates[i]);
+                  },
+                  false);
     for (size_t i = 0; i < candidates.size(); ++i) {
         const float area = scene_.area(candidates[i]);
         if (mean[i] * area > 0.0f) triangles_.push_back({candidates[i], area, mean[i] * area, 0.0f});
@@ -66,7 +70,9 @@ void EmitterSet::drop_large() {
     for (uint32_t t = 0; t < scene_.triangles.size(); ++t) total += scene_.area(t);
     std::map<uint32_t, double> by_material;
     for (const auto& t : triangles_) by_material[scene_.triangles[t.triangle].material] += t.area;
-    std::erase_if(triangles_, [&](const EmissiveTriangle& t) { return by_material[scene_.triangles[t.triangle].material] > kLargeShare * total; });
+    std::erase_if(triangles_, [&](const EmissiveTriangle& t) {
+        return by_material[scene_.triangles[t.triangle].material] > kLargeShare * total;
+    });
 }
 
 /// Clusters never mix light sets, nor surfaces that are there at different times.
@@ -75,7 +81,8 @@ void EmitterSet::split_by_element() {
         const Instance& i = scene_.instance_of(t.triangle);
         return std::tuple(i.light_set, i.element, i.open_pose);
     };
-    std::stable_sort(triangles_.begin(), triangles_.end(), [&](const EmissiveTriangle& a, const EmissiveTriangle& b) { return key(a) < key(b); });
+    std::stable_sort(triangles_.begin(), triangles_.end(),
+                     [&](const EmissiveTriangle& a, const EmissiveTriangle& b) { return key(a) < key(b); });
     const auto total = static_cast<uint32_t>(triangles_.size());
     for (uint32_t first = 0, end; first < total; first = end) {
         for (end = first + 1; end < total && key(triangles_[end]) == key(triangles_[first]);) ++end;
@@ -103,7 +110,9 @@ Presence EmitterSet::presence(uint32_t e) const {
 
 void EmitterSet::split(uint32_t first, uint32_t count) {
     if (count <= kClusterSize) return add_cluster(first, count);
-    const auto centroid = [&](const EmissiveTriangle& t) { return scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f); };
+    const auto centroid = [&](const EmissiveTriangle& t) {
+        return scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f);
+    };
     Vec3 low(1e30f), high(-1e30f);
     for (uint32_t i = first; i < first + count; ++i) {
         low = glm::min(low, centroid(triangles_[i]));
@@ -132,7 +141,8 @@ void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
         c.center += scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f) / static_cast<float>(count);
     }
     for (uint32_t i = first; i < first + count; ++i)
-        for (const uint32_t v : scene_.triangles[triangles_[i].triangle].vertex) c.radius = std::max(c.radius, glm::distance(scene_.positions[v], c.center));
+        for (const uint32_t v : scene_.triangles[triangles_[i].triangle].vertex)
+            c.radius = std::max(c.radius, glm::distance(scene_.positions[v], c.center));
     c.axis = normalize_or(c.axis, {0, 0, 1});
     c.set = scene_.instance_of(triangles_[first].triangle).light_set;
     c.presence = scene_.presence(triangles_[first].triangle);
@@ -154,7 +164,8 @@ float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3
     float facing = 1.0f;
     if (c.bend < kFlatBend) {
         const float toward = -glm::dot(to, c.axis);
-        facing = std::clamp(((c.two_sided ? std::abs(toward) : toward) + c.radius * (1.0f + c.bend)) / distance + c.bend, 0.0f, 1.0f);
+        facing = std::clamp(
+            ((c.two_sided ? std::abs(toward) : toward) + c.radius * (1.0f + c.bend)) / distance + c.bend, 0.0f, 1.0f);
     }
     return c.power * cosine * facing / std::max(distance2, 0.25f * c.radius * c.radius);
 }
@@ -173,7 +184,13 @@ EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const
     if (emitter.kind == Kind::sky) return sample_sky(u);
     const Light& light = scene_.lights[emitter.index];
     const LightSample s = light.sample(p, u);
-    return {s.direction, s.distance, p + s.direction * s.distance, s.weight, 0.0f, light.casts_shadow, light.type == Light::Type::point || light.type == Light::Type::spot};
+    return {s.direction,
+            s.distance,
+            p + s.direction * s.distance,
+            s.weight,
+            0.0f,
+            light.casts_shadow,
+            light.type == Light::Type::point || light.type == Light::Type::spot};
 }
 
 EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {

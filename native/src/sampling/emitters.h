@@ -1,36 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "base/parallel.h"
 #include "sampling/sky_sampler.h"
 #include "scene/snapshot.h"
-
-#include <memory>
-#include <vector>
 
 namespace ajar {
 
 /// One sample of an emitter from a receiver.
 struct EmitterSample {
     Vec3 direction{0.0f};
-    float distance = 0.0f;   ///< m; infinite for sun and sky
-    Vec3 target{0.0f};       ///< point that must be seen, off its surface; unused at infinity
-    Vec3 weight{0.0f};       ///< W/m^2 facing the light, divided by the pdf inside this emitter
-    float pdf = 0.0f;        ///< per steradian inside this emitter; 0 for lamps, which rays never hit
+    float distance = 0.0f; ///< m; infinite for sun and sky
+    Vec3 target{0.0f};     ///< point that must be seen, off its surface; unused at infinity
+    Vec3 weight{0.0f};     ///< W/m^2 facing the light, divided by the pdf inside this emitter
+    float pdf = 0.0f;      ///< per steradian inside this emitter; 0 for lamps, which rays never hit
     bool casts_shadow = true;
-    bool point_like = false;       ///< a point or spot lamp: as strong in every direction nearby
-    uint32_t texel = 0xffffffffu;  ///< bright texel: page texel whose light it is
-    float inverse_density = 0.0f;  ///< bright texel: weight = radiance * inverse_density
+    bool point_like = false;      ///< a point or spot lamp: as strong in every direction nearby
+    uint32_t texel = 0xffffffffu; ///< bright texel: page texel whose light it is
+    float inverse_density = 0.0f; ///< bright texel: weight = radiance * inverse_density
 };
 
 /// A lightmap texel that is so bright that it is worth aiming at: a parallelogram that reflects
 /// radiance from its front.
 struct BrightTexel {
-    uint32_t texel;      ///< index over all pages
+    uint32_t texel; ///< index over all pages
     Vec3 center{0.0f};
     Vec3 edge_x{0.0f}, edge_y{0.0f};
     Vec3 normal{0.0f};
-    Vec3 radiance{0.0f}; ///< W/(m^2 sr)
+    Vec3 radiance{0.0f};    ///< W/(m^2 sr)
     Presence presence = {}; ///< of its surface
 };
 
@@ -55,7 +55,9 @@ public:
     float importance(uint32_t e, const Vec3& p, const Vec3& n) const;
     EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
     /// Emitter that samples this triangle, or kNone.
-    uint32_t emitter_of(uint32_t triangle) const { return triangle_emitter_.empty() ? kNone : triangle_emitter_[triangle]; }
+    uint32_t emitter_of(uint32_t triangle) const {
+        return triangle_emitter_.empty() ? kNone : triangle_emitter_[triangle];
+    }
     /// Density per steradian with which sample() of its emitter picks a hit on triangle.
     float triangle_pdf(uint32_t triangle, float distance, float cosine) const;
     /// Emitter of the image sky, or kNone.
@@ -82,10 +84,10 @@ private:
         uint32_t first, count;
         Vec3 center;
         float radius;
-        Vec3 axis;    ///< mean normal
-        float power;  ///< sum of luminance * area
+        Vec3 axis;   ///< mean normal
+        float power; ///< sum of luminance * area
         bool two_sided;
-        float bend;   ///< sine of the largest angle between a normal and axis
+        float bend; ///< sine of the largest angle between a normal and axis
         uint32_t set = kNoElement;
         Presence presence = {};
     };
@@ -124,7 +126,7 @@ private:
         float density; ///< per m^2
     };
     std::vector<BrightTexel> bright_;
-    std::vector<float> bright_running_; ///< running sums of power inside clusters
+    std::vector<float> bright_running_;  ///< running sums of power inside clusters
     std::vector<uint32_t> bright_index_; ///< per page texel: into bright_entries_, or kNone
     std::vector<BrightEntry> bright_entries_;
 };

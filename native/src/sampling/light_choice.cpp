@@ -8,11 +8,11 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kFineCandidates = 32;
-constexpr uint32_t kProbes = 8;           ///< receivers of the tile that estimate importance
-constexpr uint32_t kVisibilityRays = 16;  ///< per candidate and tile
+constexpr uint32_t kProbes = 8;          ///< receivers of the tile that estimate importance
+constexpr uint32_t kVisibilityRays = 16; ///< per candidate and tile
 constexpr float kVisibilityFloor = 0.05f;
-constexpr float kUnseenShare = 0.25f;     ///< of what the seen weigh that lamps seen by no ray may weigh together
-constexpr float kTileShare = 0.01f;       ///< of the tile's weight that each receiver keeps
+constexpr float kUnseenShare = 0.25f; ///< of what the seen weigh that lamps seen by no ray may weigh together
+constexpr float kTileShare = 0.01f;   ///< of the tile's weight that each receiver keeps
 
 } // namespace
 
@@ -33,12 +33,15 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     for (const Candidate& c : candidates_) total += c.weight;
     // Probes can miss a lamp that only some receivers see; it keeps a small chance.
     for (Candidate& c : candidates_) c.weight += 1e-3f * total / static_cast<float>(candidates_.size()) + 1e-20f;
-    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) { return a.weight != b.weight ? a.weight > b.weight : a.emitter < b.emitter; });
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+        return a.weight != b.weight ? a.weight > b.weight : a.emitter < b.emitter;
+    });
     fine_ = std::min<uint32_t>(kFineCandidates, static_cast<uint32_t>(candidates_.size()));
     for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
 }
 
-uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                                       uint32_t seed) {
     visibility_.assign(fine_, 1.0f);
     uint64_t rays = 0;
     float seen_weight = 0.0f, unseen_weight = 0.0f;
@@ -53,14 +56,21 @@ uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapRecei
             if (!(max_component(s.weight) > 0.0f) || glm::dot(s.direction, receivers.frame[r].z) <= 0.0f) continue;
             ++tried;
             ++rays;
-            if (!s.casts_shadow || tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle == kMiss) ++seen;
+            if (!s.casts_shadow ||
+                tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle ==
+                    kMiss)
+                ++seen;
         }
-        visibility_[c] = std::max(kVisibilityFloor, (static_cast<float>(seen) + 0.25f) / (static_cast<float>(tried) + 0.5f));
-        if (seen != 0) seen_weight += candidates_[c].weight * visibility_[c];
-        else unseen.push_back(c), unseen_weight += candidates_[c].weight * visibility_[c];
+        visibility_[c] =
+            std::max(kVisibilityFloor, (static_cast<float>(seen) + 0.25f) / (static_cast<float>(tried) + 0.5f));
+        if (seen != 0)
+            seen_weight += candidates_[c].weight * visibility_[c];
+        else
+            unseen.push_back(c), unseen_weight += candidates_[c].weight * visibility_[c];
     }
     // Behind a wall even the strongest lamp should not take the samples from a candle in the room.
-    const float scale = seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(unseen_weight, 1e-30f)) : 1.0f;
+    const float scale =
+        seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(unseen_weight, 1e-30f)) : 1.0f;
     for (const uint32_t c : unseen) visibility_[c] *= scale;
     seen_ = seen_weight > 0.0f || fine_ < candidates_.size();
     return rays;
@@ -79,7 +89,8 @@ uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& recei
         float* row = &running_[size_t{local} * (fine_ + 1)];
         float sum = 0.0f;
         for (uint32_t c = 0; c < fine_; ++c) {
-            const float here = emitters_.importance(candidates_[c].emitter, receivers.origins(r)[0], receivers.frame[r].z);
+            const float here =
+                emitters_.importance(candidates_[c].emitter, receivers.origins(r)[0], receivers.frame[r].z);
             row[c] = sum += (here + kTileShare * candidates_[c].weight) * visibility_[c];
         }
         row[fine_] = sum + rest;
@@ -91,7 +102,8 @@ uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
     const float* row = &running_[size_t{local} * (fine_ + 1)];
     const float total = row[fine_];
     float target = u * total;
-    const auto slot = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(row, row + fine_ + 1, target) - row, rest_running_.empty() ? fine_ - 1 : fine_));
+    const auto slot = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(row, row + fine_ + 1, target) - row,
+                                                                rest_running_.empty() ? fine_ - 1 : fine_));
     const float before = slot > 0 ? row[slot - 1] : 0.0f, weight = row[slot] - before;
     target -= before;
     if (slot < fine_) {
@@ -99,7 +111,9 @@ uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
         chance = weight / total;
         return candidates_[slot].emitter;
     }
-    const auto i = static_cast<size_t>(std::min<ptrdiff_t>(std::upper_bound(rest_running_.begin(), rest_running_.end(), target) - rest_running_.begin(), static_cast<ptrdiff_t>(rest_running_.size()) - 1));
+    const auto i = static_cast<size_t>(std::min<ptrdiff_t>(
+        std::upper_bound(rest_running_.begin(), rest_running_.end(), target) - rest_running_.begin(),
+        static_cast<ptrdiff_t>(rest_running_.size()) - 1));
     const float first = i > 0 ? rest_running_[i - 1] : 0.0f, share = rest_running_[i] - first;
     u = std::clamp((target - first) / std::max(share, 1e-30f), 0.0f, 0x1.fffffep-1f);
     chance = share / total;

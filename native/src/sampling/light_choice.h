@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "receiver/lightmap.h"
 #include "sampling/emitters.h"
-
-#include <vector>
 
 namespace ajar {
 
@@ -37,18 +37,19 @@ private:
         float weight; ///< of the whole tile
     };
     void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
-    uint64_t learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed);
+    uint64_t learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                              uint32_t seed);
 
     const EmitterSet& emitters_;
     LightRoles roles_;
     std::vector<uint32_t> choices_;
     bool seen_ = true;
-    std::vector<Candidate> candidates_;   ///< strongest first; the first fine_ are weighed per receiver
+    std::vector<Candidate> candidates_; ///< strongest first; the first fine_ are weighed per receiver
     uint32_t fine_ = 0;
-    std::vector<float> visibility_;       ///< [fine_]
-    std::vector<float> running_;          ///< [tile.count][fine_ + 1] running weights, last is the rest
-    std::vector<float> rest_running_;     ///< candidates from fine_ on
-    std::vector<uint32_t> slot_of_;       ///< per emitter: candidate index or kNone
+    std::vector<float> visibility_;   ///< [fine_]
+    std::vector<float> running_;      ///< [tile.count][fine_ + 1] running weights, last is the rest
+    std::vector<float> rest_running_; ///< candidates from fine_ on
+    std::vector<uint32_t> slot_of_;   ///< per emitter: candidate index or kNone
 };
 
 } // namespace ajar

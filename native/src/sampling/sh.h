@@ -6,7 +6,8 @@
 namespace ajar {
 
 inline constexpr int kShCount = 9;
-inline constexpr float kSh0 = 0.28209479f, kSh1 = 0.48860251f, kSh2 = 1.09254843f, kSh3 = 0.31539157f, kSh4 = 0.54627422f;
+inline constexpr float kSh0 = 0.28209479f, kSh1 = 0.48860251f, kSh2 = 1.09254843f, kSh3 = 0.31539157f,
+                       kSh4 = 0.54627422f;
 
 /// Real spherical harmonics up to l = 2 in Sloan's order and signs (algorithms.md, conventions).
 inline void sh_basis(float x, float y, float z, float* out) {

@@ -8,7 +8,8 @@ namespace {
 /// Index of the entry that u falls into and the position inside it; cdf holds running sums.
 uint32_t pick(const float* cdf, uint32_t count, float u, float& inside) {
     const float target = u * cdf[count - 1];
-    const auto i = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(cdf, cdf + count, target) - cdf, count - 1));
+    const auto i =
+        static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(cdf, cdf + count, target) - cdf, count - 1));
     const float before = i > 0 ? cdf[i - 1] : 0.0f;
     inside = std::clamp((target - before) / std::max(cdf[i] - before, 1e-30f), 0.0f, 0x1.fffffep-1f);
     return i;
@@ -56,6 +57,8 @@ SkySample SkySampler::sample(const Vec2& u) const {
     return {{r * std::cos(phi), r * std::sin(phi), z}, radiance, luminance(radiance) / total_};
 }
 
-float SkySampler::pdf(const Vec3& w) const { return total_ > 0.0f ? std::max(0.0f, luminance(sky_.radiance(w))) / total_ : 0.0f; }
+float SkySampler::pdf(const Vec3& w) const {
+    return total_ > 0.0f ? std::max(0.0f, luminance(sky_.radiance(w))) / total_ : 0.0f;
+}
 
 } // namespace ajar

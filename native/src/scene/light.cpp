@@ -93,10 +93,13 @@ Vec2 square_to_disk(const Vec2& u) {
 
 LightSample Light::sample(const Vec3& p, const Vec2& u) const {
     switch (type) {
-    case Type::sun: return sample_sun(*this, u);
-    case Type::point:
-    case Type::spot: return sample_ball(*this, p, u);
-    default: return sample_area(*this, p, u);
+        case Type::sun:
+            return sample_sun(*this, u);
+        case Type::point:
+        case Type::spot:
+            return sample_ball(*this, p, u);
+        default:
+            return sample_area(*this, p, u);
     }
 }
 
@@ -104,13 +107,16 @@ float Light::importance(const Vec3& p, const Vec3& n) const {
     const float strength = luminance(intensity);
     if (type == Type::sun) return strength * std::max(0.0f, -glm::dot(axis, n) + radius);
     const Vec3 to_light = position - p;
-    const float extent = type == Type::point || type == Type::spot ? radius : 0.5f * glm::length(edge_x) + 0.5f * glm::length(edge_y);
+    const float extent =
+        type == Type::point || type == Type::spot ? radius : 0.5f * glm::length(edge_x) + 0.5f * glm::length(edge_y);
     const float distance2 = glm::dot(to_light, to_light), distance = std::sqrt(distance2);
     // The lamp's nearest part may stand higher over the horizon than its centre does.
     const float cosine = std::min(1.0f, (glm::dot(to_light, n) + extent) / std::max(distance, 1e-6f));
     if (cosine <= 0.0f) return 0.0f;
     const float falloff = 1.0f / std::max(distance2 + 0.25f * extent * extent, 1e-12f);
-    if (type == Type::spot && distance > 2.0f * radius && spot_factor(*this, -to_light / distance) == 0.0f && radius == 0.0f) return 0.0f;
+    if (type == Type::spot && distance > 2.0f * radius && spot_factor(*this, -to_light / distance) == 0.0f &&
+        radius == 0.0f)
+        return 0.0f;
     if (type == Type::point || type == Type::spot) return strength * cosine * falloff;
     const float emitter_cosine = (-glm::dot(to_light, axis) + extent) / std::max(distance, 1e-6f);
     return strength * area * cosine * std::clamp(emitter_cosine, 0.0f, 1.0f) * falloff;
@@ -122,7 +128,8 @@ void Light::move(const DVec3& offset) {
 }
 
 Light make_light(const ajar_light_desc& d, const std::string& name, const Affine& m) {
-    static constexpr Light::Type kTypes[] = {Light::Type::point, Light::Type::spot, Light::Type::sun, Light::Type::rectangle, Light::Type::ellipse};
+    static constexpr Light::Type kTypes[] = {Light::Type::point, Light::Type::spot, Light::Type::sun,
+                                             Light::Type::rectangle, Light::Type::ellipse};
     Light l;
     l.name = name;
     l.type = kTypes[d.type];
@@ -134,13 +141,19 @@ Light make_light(const ajar_light_desc& d, const std::string& name, const Affine
     // Negative lights are a renderer's trick; a package stores no negative irradiance.
     l.intensity = glm::max(Vec3(d.color[0], d.color[1], d.color[2]) * d.energy, Vec3(0.0f));
     switch (l.type) {
-    case Light::Type::spot: set_spot(l, d); [[fallthrough]];
-    case Light::Type::point:
-        l.radius = std::max(d.radius, 0.0f);
-        l.intensity *= 0.25f * kInvPi;
-        break;
-    case Light::Type::sun: l.radius = std::tan(0.5f * std::clamp(d.sun_angle, 0.0f, 0.99f * kPi)); break;
-    default: set_area(l, d, m); break;
+        case Light::Type::spot:
+            set_spot(l, d);
+            [[fallthrough]];
+        case Light::Type::point:
+            l.radius = std::max(d.radius, 0.0f);
+            l.intensity *= 0.25f * kInvPi;
+            break;
+        case Light::Type::sun:
+            l.radius = std::tan(0.5f * std::clamp(d.sun_angle, 0.0f, 0.99f * kPi));
+            break;
+        default:
+            set_area(l, d, m);
+            break;
     }
     return l;
 }

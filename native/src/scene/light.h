@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "ajar/ajar.h"
 #include "base/math.h"
 #include "scene/element.h"
-
-#include <string>
 
 namespace ajar {
 
@@ -27,13 +27,13 @@ struct Light {
     uint32_t light_set = kNoElement;
     Vec3 position{0.0f};
     DVec3 exact_position{0.0};
-    Vec3 axis{0, 0, -1};     ///< where it shines; sun: where the light travels
-    Vec3 edge_x{0.0f}, edge_y{0.0f}; ///< area: full extents
-    Vec3 intensity{0.0f};    ///< point, spot: W/sr; sun: W/m^2; area: radiance W/(m^2 sr)
-    float radius = 0.0f;     ///< point, spot: m; sun: tangent of half its diameter
-    float cone_cos = -1.0f, cone_smooth = 0.0f; ///< spot: Blender's cone
+    Vec3 axis{0, 0, -1};                          ///< where it shines; sun: where the light travels
+    Vec3 edge_x{0.0f}, edge_y{0.0f};              ///< area: full extents
+    Vec3 intensity{0.0f};                         ///< point, spot: W/sr; sun: W/m^2; area: radiance W/(m^2 sr)
+    float radius = 0.0f;                          ///< point, spot: m; sun: tangent of half its diameter
+    float cone_cos = -1.0f, cone_smooth = 0.0f;   ///< spot: Blender's cone
     float spread_tan = 0.0f, spread_scale = 1.0f; ///< area: 0 = Lambertian
-    float area = 0.0f;       ///< m^2
+    float area = 0.0f;                            ///< m^2
 
     /// Samples the lamp from p with two numbers in [0,1).
     LightSample sample(const Vec3& p, const Vec2& u) const;

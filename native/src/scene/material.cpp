@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/material.h"
 
-#include "scene/snapshot.h"
-
 #include <array>
+
+#include "scene/snapshot.h"
 
 namespace ajar {
 
@@ -36,11 +36,16 @@ Vec4 corner_color(const Mesh& mesh, uint32_t layer, const MeshPoint& at) {
 
 Vec3 pick(const Vec4& v, uint32_t channel) {
     switch (channel) {
-    case AJAR_CHANNEL_R: return Vec3(v.x);
-    case AJAR_CHANNEL_G: return Vec3(v.y);
-    case AJAR_CHANNEL_B: return Vec3(v.z);
-    case AJAR_CHANNEL_A: return Vec3(v.w);
-    default: return Vec3(v);
+        case AJAR_CHANNEL_R:
+            return Vec3(v.x);
+        case AJAR_CHANNEL_G:
+            return Vec3(v.y);
+        case AJAR_CHANNEL_B:
+            return Vec3(v.z);
+        case AJAR_CHANNEL_A:
+            return Vec3(v.w);
+        default:
+            return Vec3(v);
     }
 }
 
@@ -69,15 +74,20 @@ void add_closure(const Snapshot& scene, const ajar_closure& c, const MeshPoint& 
     if (w == 0.0f) return;
     const Vec3 color = evaluate(scene, c.color, at);
     switch (c.type) {
-    case AJAR_CLOSURE_DIFFUSE: out.reflectance += w * unit(color); break;
-    case AJAR_CLOSURE_PRINCIPLED:
-        out.reflectance += w * principled_albedo(unit(color), std::clamp(evaluate(scene, c.metallic, at).x, 0.0f, 1.0f),
-                                                 evaluate(scene, c.roughness, at).x, c.specular);
-        break;
-    case AJAR_CLOSURE_EMISSION:
-        out.emission += w * glm::max(color * evaluate(scene, c.strength, at).x, Vec3(0.0f));
-        break;
-    default: out.transmittance += w * unit(color); break;
+        case AJAR_CLOSURE_DIFFUSE:
+            out.reflectance += w * unit(color);
+            break;
+        case AJAR_CLOSURE_PRINCIPLED:
+            out.reflectance +=
+                w * principled_albedo(unit(color), std::clamp(evaluate(scene, c.metallic, at).x, 0.0f, 1.0f),
+                                      evaluate(scene, c.roughness, at).x, c.specular);
+            break;
+        case AJAR_CLOSURE_EMISSION:
+            out.emission += w * glm::max(color * evaluate(scene, c.strength, at).x, Vec3(0.0f));
+            break;
+        default:
+            out.transmittance += w * unit(color);
+            break;
     }
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "ajar/ajar.h"
-#include "scene/texture.h"
-
 #include <string>
 #include <vector>
+
+#include "ajar/ajar.h"
+#include "scene/texture.h"
 
 namespace ajar {
 

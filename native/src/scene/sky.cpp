@@ -16,8 +16,10 @@ Vec3 Sky::radiance(const Vec3& w) const {
     if (!has_image) return color;
     // Piecewise constant, so that importance sampling by texel reproduces it exactly.
     const Vec2 uv = direction_to_uv(w);
-    const auto x = std::min(static_cast<uint32_t>(std::max(uv.x, 0.0f) * static_cast<float>(image.width)), image.width - 1);
-    const auto y = std::min(static_cast<uint32_t>(std::max(uv.y, 0.0f) * static_cast<float>(image.height)), image.height - 1);
+    const auto x =
+        std::min(static_cast<uint32_t>(std::max(uv.x, 0.0f) * static_cast<float>(image.width)), image.width - 1);
+    const auto y =
+        std::min(static_cast<uint32_t>(std::max(uv.y, 0.0f) * static_cast<float>(image.height)), image.height - 1);
     return color * Vec3(image.texel(x, y));
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "base/math.h"
 #include "scene/texture.h"
-
-#include <vector>
 
 namespace ajar {
 
@@ -12,7 +12,7 @@ namespace ajar {
 /// mapping (u = 0.5 - atan2(y, x) / 2 pi, v = 0.5 + asin(z) / pi).
 struct Sky {
     bool present = false;
-    Vec3 color{0.0f};            ///< radiance W/(m^2 sr), or factor of the image
+    Vec3 color{0.0f}; ///< radiance W/(m^2 sr), or factor of the image
     bool has_image = false;
     Texture image;
 

@@ -51,7 +51,8 @@ Vec2 Snapshot::lightmap_uv(uint32_t triangle, int corner) const {
     const Triangle& t = triangles[triangle];
     const Instance& instance = instances[t.instance];
     const Page& page = pages[instance.page];
-    const Vec2 uv = meshes[instance.mesh].uv_layers[instance.lightmap_layer][3 * static_cast<size_t>(t.source) + corner];
+    const Vec2 uv =
+        meshes[instance.mesh].uv_layers[instance.lightmap_layer][3 * static_cast<size_t>(t.source) + corner];
     return (uv * instance.uv_scale + instance.uv_offset) * Vec2(page.width, page.height);
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "base/error.h"
 #include "scene/element.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/sky.h"
 #include "scene/texture.h"
-
-#include <string>
-#include <vector>
 
 namespace ajar {
 
@@ -18,7 +18,7 @@ struct Mesh {
     std::string name;
     std::vector<Vec3> positions;
     std::vector<uint32_t> corner_vertex;
-    std::vector<Vec3> corner_normals; ///< empty: flat shaded
+    std::vector<Vec3> corner_normals;    ///< empty: flat shaded
     std::vector<uint32_t> triangle_slot; ///< empty: slot 0
     std::vector<std::vector<Vec2>> uv_layers;
     std::vector<std::vector<Vec4>> color_layers;
@@ -43,11 +43,11 @@ struct Instance {
 
 /// One world-space triangle of the flattened scene.
 struct Triangle {
-    uint32_t vertex[3];  ///< into Snapshot::positions
+    uint32_t vertex[3]; ///< into Snapshot::positions
     uint32_t instance;
-    uint32_t source;     ///< triangle of the instance's mesh
+    uint32_t source; ///< triangle of the instance's mesh
     uint32_t material;
-    bool mirrored;       ///< the instance turns the winding: the normal is minus the cross product
+    bool mirrored; ///< the instance turns the winding: the normal is minus the cross product
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
@@ -91,7 +91,9 @@ struct Snapshot {
     Vec3 bounds_min{0.0f}, bounds_max{0.0f};
     std::vector<Warning> warnings;
 
-    uint64_t texel_count() const { return pages.empty() ? 0 : pages.back().first_texel + uint64_t{pages.back().width} * pages.back().height; }
+    uint64_t texel_count() const {
+        return pages.empty() ? 0 : pages.back().first_texel + uint64_t{pages.back().width} * pages.back().height;
+    }
     float diagonal() const { return glm::length(bounds_max - bounds_min); }
 
     /// RayMask bits of a triangle. Triangles are stored grouped by it.

@@ -16,7 +16,8 @@ void require(bool condition, ajar_result code, const std::string& message, const
 std::string name_of(const char* name, const char* fallback) { return name != nullptr ? name : fallback; }
 
 /// Floats that are not finite become 0; returns how many.
-template <class T> size_t clean(std::vector<T>& values) {
+template <class T>
+size_t clean(std::vector<T>& values) {
     size_t bad = 0;
     auto* f = reinterpret_cast<float*>(values.data());
     for (size_t i = 0; i < values.size() * sizeof(T) / sizeof(float); ++i) {
@@ -27,7 +28,8 @@ template <class T> size_t clean(std::vector<T>& values) {
     return bad;
 }
 
-template <class T> std::vector<T> copy_as(const float* source, size_t count) {
+template <class T>
+std::vector<T> copy_as(const float* source, size_t count) {
     std::vector<T> out(count);
     if (count != 0) std::memcpy(static_cast<void*>(out.data()), source, count * sizeof(T));
     return out;
@@ -36,7 +38,8 @@ template <class T> std::vector<T> copy_as(const float* source, size_t count) {
 Affine affine_of(const double* m, const std::string& culprit) {
     Affine a;
     for (int i = 0; i < 12; ++i) {
-        require(std::isfinite(m[i]), AJAR_ERROR_INPUT, "its transform is not finite; clear or fix its transform", culprit);
+        require(std::isfinite(m[i]), AJAR_ERROR_INPUT, "its transform is not finite; clear or fix its transform",
+                culprit);
         a.m[i] = m[i];
     }
     return a;
@@ -79,7 +82,9 @@ const Instance* farthest(const std::vector<Extent>& extents) {
         const DVec3 d = glm::max(middle - e.low, e.high - middle);
         return std::max({d.x, d.y, d.z});
     };
-    return std::max_element(extents.begin(), extents.end(), [&](const Extent& a, const Extent& b) { return reach(a) < reach(b); })->instance;
+    return std::max_element(extents.begin(), extents.end(),
+                            [&](const Extent& a, const Extent& b) { return reach(a) < reach(b); })
+        ->instance;
 }
 
 size_t clean_input(ajar_input& in) {
@@ -92,20 +97,28 @@ size_t clean_input(ajar_input& in) {
 }
 
 void check_input(const ajar_input& in, const std::string& material, size_t texture_count) {
-    require(in.texture == AJAR_NONE || in.texture < texture_count, AJAR_ERROR_ARGUMENT, "names a texture that was not added", material);
+    require(in.texture == AJAR_NONE || in.texture < texture_count, AJAR_ERROR_ARGUMENT,
+            "names a texture that was not added", material);
     require(in.channel <= AJAR_CHANNEL_A, AJAR_ERROR_ARGUMENT, "has an input with an unknown channel", material);
 }
 
 } // namespace
 
-SnapshotBuilder::SnapshotBuilder(std::string name) : snapshot_(std::make_shared<Snapshot>()) { snapshot_->name = std::move(name); }
+SnapshotBuilder::SnapshotBuilder(std::string name) : snapshot_(std::make_shared<Snapshot>()) {
+    snapshot_->name = std::move(name);
+}
 
-void SnapshotBuilder::warn(const std::string& culprit, const std::string& text) { snapshot_->warnings.push_back({culprit, text}); }
+void SnapshotBuilder::warn(const std::string& culprit, const std::string& text) {
+    snapshot_->warnings.push_back({culprit, text});
+}
 
 uint32_t SnapshotBuilder::add_texture(const ajar_texture_desc& d) {
     const std::string name = name_of(d.name, "image");
-    require(d.width > 0 && d.height > 0 && d.width <= kMaxTextureSize && d.height <= kMaxTextureSize, AJAR_ERROR_ARGUMENT, "image size is 0 or above 32768", name);
-    require(d.texels != nullptr && d.texel <= AJAR_TEXEL_F32 && d.color <= AJAR_COLOR_SRGB && d.extend <= AJAR_EXTEND_CLIP, AJAR_ERROR_ARGUMENT, "image description is incomplete", name);
+    require(d.width > 0 && d.height > 0 && d.width <= kMaxTextureSize && d.height <= kMaxTextureSize,
+            AJAR_ERROR_ARGUMENT, "image size is 0 or above 32768", name);
+    require(
+        d.texels != nullptr && d.texel <= AJAR_TEXEL_F32 && d.color <= AJAR_COLOR_SRGB && d.extend <= AJAR_EXTEND_CLIP,
+        AJAR_ERROR_ARGUMENT, "image description is incomplete", name);
     const size_t scalars = size_t{4} * d.width * d.height;
     const size_t bytes = scalars * (d.texel == AJAR_TEXEL_F32 ? sizeof(float) : 1);
     require(d.texel_bytes == bytes, AJAR_ERROR_ARGUMENT, "texel_bytes does not match the image size", name);
@@ -118,7 +131,8 @@ uint32_t SnapshotBuilder::add_texture(const ajar_texture_desc& d) {
     t.srgb = d.color == AJAR_COLOR_SRGB;
     if (d.texel == AJAR_TEXEL_F32) {
         t.floats = copy_as<float>(static_cast<const float*>(d.texels), scalars);
-        if (const size_t bad = clean(t.floats)) warn(name, std::to_string(bad) + " texels are not finite and count as 0");
+        if (const size_t bad = clean(t.floats))
+            warn(name, std::to_string(bad) + " texels are not finite and count as 0");
     } else {
         const auto* b = static_cast<const uint8_t*>(d.texels);
         t.bytes.assign(b, b + scalars);
@@ -130,13 +144,15 @@ uint32_t SnapshotBuilder::add_texture(const ajar_texture_desc& d) {
 uint32_t SnapshotBuilder::add_material(const ajar_material_desc& d) {
     Material m;
     m.name = name_of(d.name, "material");
-    require(d.closure_count <= AJAR_MAX_CLOSURES && (d.closure_count == 0 || d.closures != nullptr), AJAR_ERROR_ARGUMENT, "has more closures than AJAR_MAX_CLOSURES, or none given", m.name);
+    require(d.closure_count <= AJAR_MAX_CLOSURES && (d.closure_count == 0 || d.closures != nullptr),
+            AJAR_ERROR_ARGUMENT, "has more closures than AJAR_MAX_CLOSURES, or none given", m.name);
     m.closures.assign(d.closures, d.closures + d.closure_count);
     m.one_sided = d.one_sided != 0;
     size_t bad = 0;
     for (ajar_closure& c : m.closures) {
         require(c.type <= AJAR_CLOSURE_TRANSPARENT, AJAR_ERROR_ARGUMENT, "has a closure of unknown type", m.name);
-        for (ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength, &c.metallic, &c.roughness}) bad += clean_input(*in);
+        for (ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength, &c.metallic, &c.roughness})
+            bad += clean_input(*in);
         if (!std::isfinite(c.specular)) c.specular = 0.0f, ++bad;
         m.emits |= closure_emits(c);
         m.transmits |= closure_transmits(c);
@@ -151,11 +167,15 @@ uint32_t SnapshotBuilder::add_mesh(const ajar_mesh_desc& d) {
     m.name = name_of(d.name, "mesh");
     const size_t corners = size_t{3} * d.triangle_count;
     require(d.triangle_count < (1u << 28), AJAR_ERROR_ARGUMENT, "has too many triangles", m.name);
-    require((d.vertex_count == 0 || d.positions != nullptr) && (corners == 0 || d.corner_vertex != nullptr), AJAR_ERROR_ARGUMENT, "positions or corner_vertex is missing", m.name);
-    require((d.uv_layer_count == 0 || d.uv_layers != nullptr) && (d.color_layer_count == 0 || d.color_layers != nullptr), AJAR_ERROR_ARGUMENT, "layer array is missing", m.name);
+    require((d.vertex_count == 0 || d.positions != nullptr) && (corners == 0 || d.corner_vertex != nullptr),
+            AJAR_ERROR_ARGUMENT, "positions or corner_vertex is missing", m.name);
+    require(
+        (d.uv_layer_count == 0 || d.uv_layers != nullptr) && (d.color_layer_count == 0 || d.color_layers != nullptr),
+        AJAR_ERROR_ARGUMENT, "layer array is missing", m.name);
     m.positions = copy_as<Vec3>(d.positions, d.vertex_count);
     m.corner_vertex.assign(d.corner_vertex, d.corner_vertex + corners);
-    for (const uint32_t v : m.corner_vertex) require(v < d.vertex_count, AJAR_ERROR_ARGUMENT, "a corner names a vertex that does not exist", m.name);
+    for (const uint32_t v : m.corner_vertex)
+        require(v < d.vertex_count, AJAR_ERROR_ARGUMENT, "a corner names a vertex that does not exist", m.name);
     if (d.corner_normals != nullptr) m.corner_normals = copy_as<Vec3>(d.corner_normals, corners);
     if (d.triangle_slot != nullptr) m.triangle_slot.assign(d.triangle_slot, d.triangle_slot + d.triangle_count);
     size_t bad = clean(m.corner_normals);
@@ -176,9 +196,11 @@ uint32_t SnapshotBuilder::add_element(const ajar_element_desc& d) {
     Element e;
     e.name = name_of(d.name, "element");
     require(d.kind <= AJAR_ELEMENT_TOGGLE, AJAR_ERROR_ARGUMENT, "unknown kind of element", e.name);
-    require(snapshot_->elements.size() < kMaxElements, AJAR_ERROR_INPUT, "the scene has more than 65000 light sets, doors and toggles", e.name);
+    require(snapshot_->elements.size() < kMaxElements, AJAR_ERROR_INPUT,
+            "the scene has more than 65000 light sets, doors and toggles", e.name);
     e.kind = static_cast<ElementKind>(d.kind);
-    require(d.weight >= 0.0f && std::isfinite(d.weight), AJAR_ERROR_INPUT, "its weight is negative or not finite", e.name);
+    require(d.weight >= 0.0f && std::isfinite(d.weight), AJAR_ERROR_INPUT, "its weight is negative or not finite",
+            e.name);
     require(!e.is_switch() || d.weight <= 1.0f, AJAR_ERROR_INPUT, "its openness or presence is above 1", e.name);
     e.weight = d.weight;
     e.combines = d.combine != 0;
@@ -190,7 +212,8 @@ uint32_t SnapshotBuilder::add_element(const ajar_element_desc& d) {
 void SnapshotBuilder::check_element(uint32_t id, bool light_set, const std::string& culprit) const {
     if (id == AJAR_NONE) return;
     require(id < snapshot_->elements.size(), AJAR_ERROR_ARGUMENT, "names an element that was not added", culprit);
-    require(snapshot_->elements[id].is_switch() != light_set, AJAR_ERROR_ARGUMENT, light_set ? "its light set is a door or toggle" : "its door or toggle is a light set", culprit);
+    require(snapshot_->elements[id].is_switch() != light_set, AJAR_ERROR_ARGUMENT,
+            light_set ? "its light set is a door or toggle" : "its door or toggle is a light set", culprit);
 }
 
 uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
@@ -208,22 +231,27 @@ uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
     i.page = d.page;
     i.uv_scale = {d.uv_scale[0], d.uv_scale[1]};
     i.uv_offset = {d.uv_offset[0], d.uv_offset[1]};
-    require(is_finite(Vec3(i.uv_scale, i.uv_offset.x)) && std::isfinite(i.uv_offset.y), AJAR_ERROR_ARGUMENT, "lightmap rectangle is not finite", i.name);
+    require(is_finite(Vec3(i.uv_scale, i.uv_offset.x)) && std::isfinite(i.uv_offset.y), AJAR_ERROR_ARGUMENT,
+            "lightmap rectangle is not finite", i.name);
     check_element(d.element, false, i.name);
     check_element(d.light_set, true, i.name);
     i.element = d.element;
     i.open_pose = d.open_pose != 0;
     i.light_set = d.light_set;
-    require(!i.open_pose || (i.element != AJAR_NONE && snapshot_->elements[i.element].kind == ElementKind::door), AJAR_ERROR_ARGUMENT, "is the open pose of no door", i.name);
+    require(!i.open_pose || (i.element != AJAR_NONE && snapshot_->elements[i.element].kind == ElementKind::door),
+            AJAR_ERROR_ARGUMENT, "is the open pose of no door", i.name);
     snapshot_->instances.push_back(std::move(i));
     return static_cast<uint32_t>(snapshot_->instances.size() - 1);
 }
 
 uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
     const std::string name = name_of(d.name, "light");
-    require(d.type <= AJAR_LIGHT_AREA_ELLIPSE && d.role <= AJAR_ROLE_STATIC, AJAR_ERROR_ARGUMENT, "unknown type or role of light", name);
-    for (const float v : {d.color[0], d.color[1], d.color[2], d.energy, d.radius, d.spot_angle, d.spot_blend, d.sun_angle, d.size_x, d.size_y, d.spread})
-        require(std::isfinite(v), AJAR_ERROR_INPUT, "has a value that is not finite; set its power, colour and size again", name);
+    require(d.type <= AJAR_LIGHT_AREA_ELLIPSE && d.role <= AJAR_ROLE_STATIC, AJAR_ERROR_ARGUMENT,
+            "unknown type or role of light", name);
+    for (const float v : {d.color[0], d.color[1], d.color[2], d.energy, d.radius, d.spot_angle, d.spot_blend,
+                          d.sun_angle, d.size_x, d.size_y, d.spread})
+        require(std::isfinite(v), AJAR_ERROR_INPUT,
+                "has a value that is not finite; set its power, colour and size again", name);
     check_element(d.light_set, true, name);
     snapshot_->lights.push_back(make_light(d, name, affine_of(d.transform, name)));
     snapshot_->lights.back().light_set = d.light_set;
@@ -231,9 +259,11 @@ uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
 }
 
 uint32_t SnapshotBuilder::add_page(uint32_t width, uint32_t height) {
-    require(width > 0 && height > 0 && width <= kMaxPageSize && height <= kMaxPageSize, AJAR_ERROR_ARGUMENT, "page size is 0 or above 16384", "page");
+    require(width > 0 && height > 0 && width <= kMaxPageSize && height <= kMaxPageSize, AJAR_ERROR_ARGUMENT,
+            "page size is 0 or above 16384", "page");
     const uint64_t first = snapshot_->texel_count();
-    require(first + uint64_t{width} * height < 0xffffffffull, AJAR_ERROR_INPUT, "the pages hold more than 4 billion texels; lower the texel density", "page");
+    require(first + uint64_t{width} * height < 0xffffffffull, AJAR_ERROR_INPUT,
+            "the pages hold more than 4 billion texels; lower the texel density", "page");
     snapshot_->pages.push_back({width, height, first});
     return static_cast<uint32_t>(snapshot_->pages.size() - 1);
 }
@@ -243,9 +273,11 @@ void SnapshotBuilder::set_sky(const ajar_sky_desc& d) {
     Sky sky;
     sky.present = d.type != AJAR_SKY_NONE;
     sky.color = glm::max(Vec3(d.color[0], d.color[1], d.color[2]), Vec3(0.0f));
-    require(is_finite(sky.color), AJAR_ERROR_INPUT, "sky colour is not finite; set its colour and strength again", "world");
+    require(is_finite(sky.color), AJAR_ERROR_INPUT, "sky colour is not finite; set its colour and strength again",
+            "world");
     if (d.type == AJAR_SKY_EQUIRECT) {
-        require(d.texture < snapshot_->textures.size(), AJAR_ERROR_ARGUMENT, "sky names a texture that was not added", "world");
+        require(d.texture < snapshot_->textures.size(), AJAR_ERROR_ARGUMENT, "sky names a texture that was not added",
+                "world");
         sky.has_image = true;
         sky.image = snapshot_->textures[d.texture];
     }
@@ -266,15 +298,18 @@ void SnapshotBuilder::give_fallback_material() {
         if (!i.materials.empty()) continue;
         warn(i.name, "has no material and counts as black; give it a material");
         i.materials.push_back(fallback);
-        if (snapshot_->materials.size() == fallback) snapshot_->materials.push_back({"(none)", {}, false, false, false});
+        if (snapshot_->materials.size() == fallback)
+            snapshot_->materials.push_back({"(none)", {}, false, false, false});
     }
 }
 
 void SnapshotBuilder::check_instance(const Instance& i) const {
-    for (const uint32_t m : i.materials) require(m < snapshot_->materials.size(), AJAR_ERROR_ARGUMENT, "names a material that was not added", i.name);
+    for (const uint32_t m : i.materials)
+        require(m < snapshot_->materials.size(), AJAR_ERROR_ARGUMENT, "names a material that was not added", i.name);
     if (!i.lightmapped) return;
     require(i.page < snapshot_->pages.size(), AJAR_ERROR_ARGUMENT, "names a lightmap page that was not added", i.name);
-    require(i.lightmap_layer < snapshot_->meshes[i.mesh].uv_layers.size(), AJAR_ERROR_INPUT, "has no lightmap UVs; run Prepare UVs or mark it as occluder", i.name);
+    require(i.lightmap_layer < snapshot_->meshes[i.mesh].uv_layers.size(), AJAR_ERROR_INPUT,
+            "has no lightmap UVs; run Prepare UVs or mark it as occluder", i.name);
 }
 
 // Floats near 0 are finest, so the scene is moved there in double precision first (algorithms.md 9.8).
@@ -292,7 +327,9 @@ void SnapshotBuilder::choose_origin() {
     }
     if (extents.empty()) return;
     const double half = 0.5 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    require(half * 0x1p-23 < 1e-3, AJAR_ERROR_INPUT, "the scene is so wide that millimetres are lost; move this object closer or bake the scene in parts", farthest(extents)->name);
+    require(half * 0x1p-23 < 1e-3, AJAR_ERROR_INPUT,
+            "the scene is so wide that millimetres are lost; move this object closer or bake the scene in parts",
+            farthest(extents)->name);
     snapshot_->origin = 0.5 * (low + high);
     snapshot_->bounds_min = Vec3(low - snapshot_->origin);
     snapshot_->bounds_max = Vec3(high - snapshot_->origin);
@@ -303,7 +340,8 @@ void SnapshotBuilder::flatten(uint32_t index) {
     const Instance& i = s.instances[index];
     const Mesh& mesh = s.meshes[i.mesh];
     const auto base = static_cast<uint32_t>(s.positions.size());
-    require(s.positions.size() + mesh.positions.size() < 0xffffffffull, AJAR_ERROR_INPUT, "the scene has more than 4 billion vertices", i.name);
+    require(s.positions.size() + mesh.positions.size() < 0xffffffffull, AJAR_ERROR_INPUT,
+            "the scene has more than 4 billion vertices", i.name);
     for (const Vec3& p : mesh.positions) s.positions.push_back(Vec3(i.transform.point(DVec3(p)) - s.origin));
     const bool mirrored = i.transform.determinant() < 0.0;
     size_t broken = 0, flat = 0;
@@ -320,7 +358,9 @@ void SnapshotBuilder::flatten(uint32_t index) {
     }
     for (size_t p = base; p < s.positions.size(); ++p)
         if (!is_finite(s.positions[p])) s.positions[p] = Vec3(0.0f);
-    if (broken != 0) warn(i.name, std::to_string(broken) + " triangles have a vertex that is not finite and are left out; fix or delete those vertices");
+    if (broken != 0)
+        warn(i.name, std::to_string(broken) +
+                         " triangles have a vertex that is not finite and are left out; fix or delete those vertices");
     if (flat != 0) warn(i.name, std::to_string(flat) + " triangles have no area and are left out");
 }
 
@@ -328,7 +368,8 @@ void SnapshotBuilder::flatten(uint32_t index) {
 void SnapshotBuilder::group_triangles() {
     Snapshot& s = *snapshot_;
     const auto key = [&](const Triangle& t) { return s.ray_mask(t); };
-    std::stable_sort(s.triangles.begin(), s.triangles.end(), [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
+    std::stable_sort(s.triangles.begin(), s.triangles.end(),
+                     [&](const Triangle& a, const Triangle& b) { return key(a) < key(b); });
 }
 
 void SnapshotBuilder::commit() {

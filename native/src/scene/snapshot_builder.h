@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "scene/snapshot.h"
-
 #include <memory>
+
+#include "scene/snapshot.h"
 
 namespace ajar {
 

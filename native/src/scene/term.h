@@ -5,12 +5,12 @@
 // are idempotent (w * w = w) at the states that count, 0 and 1, so every product is a set of
 // distinct elements; light is linear in the lamps, so a term holds one light set at most.
 
-#include "ajar/ajar.h"
-#include "scene/element.h"
-
 #include <array>
 #include <cstddef>
 #include <functional>
+
+#include "ajar/ajar.h"
+#include "scene/element.h"
 
 namespace ajar {
 
@@ -102,7 +102,8 @@ public:
 
     /// Calls emit(term, sign) for every term of condition * term: w factors multiply, each 1 - w
     /// factor splits in two. Terms longer than limit elements or kTermSwitches are skipped.
-    template <class Emit> void expand(Term term, uint32_t limit, Emit&& emit) const {
+    template <class Emit>
+    void expand(Term term, uint32_t limit, Emit&& emit) const {
         if (assumed_ != 0 && term.contains(element_[0])) {
             if (!state_[0]) return;
             term = term.without(element_[0]);

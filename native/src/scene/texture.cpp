@@ -44,8 +44,8 @@ Vec4 Texture::texel(uint32_t x, uint32_t y) const {
 
 Vec4 Texture::sample(const Vec2& uv) const {
     // Far outside UVs would overflow the integer conversion; repeat is periodic, the others constant.
-    const Vec2 limited = glm::clamp(Vec2(std::isfinite(uv.x) ? uv.x : 0.0f, std::isfinite(uv.y) ? uv.y : 0.0f),
-                                    Vec2(-1e6f), Vec2(1e6f));
+    const Vec2 limited =
+        glm::clamp(Vec2(std::isfinite(uv.x) ? uv.x : 0.0f, std::isfinite(uv.y) ? uv.y : 0.0f), Vec2(-1e6f), Vec2(1e6f));
     const float px = limited.x * static_cast<float>(width), py = limited.y * static_cast<float>(height);
     if (nearest) return fetch(*this, static_cast<int64_t>(std::floor(px)), static_cast<int64_t>(std::floor(py)));
     const float fx = std::floor(px - 0.5f), fy = std::floor(py - 0.5f);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/math.h"
-
 #include <string>
 #include <vector>
+
+#include "base/math.h"
 
 namespace ajar {
 
@@ -16,9 +16,9 @@ struct Texture {
     uint32_t width = 0, height = 0;
     Extend extend = Extend::repeat;
     bool nearest = false;
-    bool srgb = false;              ///< bytes holds sRGB encoded colour
-    std::vector<uint8_t> bytes;     ///< 4 * width * height, or empty
-    std::vector<float> floats;      ///< 4 * width * height, or empty
+    bool srgb = false;          ///< bytes holds sRGB encoded colour
+    std::vector<uint8_t> bytes; ///< 4 * width * height, or empty
+    std::vector<float> floats;  ///< 4 * width * height, or empty
 
     /// Texel at column x, row y, both in range; linear colour, straight alpha.
     Vec4 texel(uint32_t x, uint32_t y) const;

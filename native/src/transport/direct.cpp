@@ -22,7 +22,8 @@ struct ShadowPacket {
     bool lit[kLanes];
 };
 
-template <class Sink> struct DirectSampler {
+template <class Sink>
+struct DirectSampler {
     const GatherScene& g;
     const DirectGroups::Group& group;
     const Tile& tile;
@@ -38,10 +39,12 @@ template <class Sink> struct DirectSampler {
     uint64_t run();
 };
 
-template <class Sink> bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const {
+template <class Sink>
+bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const {
     const uint32_t r = tile.first + local;
     const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
-    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(group.samples), chance;
+    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(group.samples),
+          chance;
     const uint32_t emitter = group.choice.pick(local, u, chance);
     const Vec3 p = g.receivers.origins(r)[(sample + h) % g.receivers.positions_per_texel];
     // Positions follow the low bits of the sample number, so the points on the lamp must not.
@@ -49,7 +52,8 @@ template <class Sink> bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
     const float own = static_cast<float>(group.samples) * s.pdf * chance;
-    const float weight = s.pdf > 0.0f ? own / (own + mis.gather * hemisphere_pdf(w.z, mis.share)) : near_lamp_factor(g.receivers, r, p, s);
+    const float weight = s.pdf > 0.0f ? own / (own + mis.gather * hemisphere_pdf(w.z, mis.share))
+                                      : near_lamp_factor(g.receivers, r, p, s);
     packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;
@@ -60,29 +64,38 @@ template <class Sink> bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t
 }
 
 /// Books the unblocked sample of a lane under the conditions of its way.
-template <class Sink> void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint32_t receiver) {
+template <class Sink>
+void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint32_t receiver) {
     const EmitterSample& s = packet.sample[lane];
     auto through = sink.start(g.scene, g.receivers.triangle[receiver]);
     if constexpr (Sink::kSwitches)
-        if (const Presence p = g.emitters.presence(packet.emitter[lane]); p.element != kNoElement && !through.condition.require(p.element, p.state)) return;
+        if (const Presence p = g.emitters.presence(packet.emitter[lane]);
+            p.element != kNoElement && !through.condition.require(p.element, p.state))
+            return;
     const auto book = [&](const auto& way) {
         // A bright texel's weight is its whole radiance over the density; its terms share it.
-        if (s.texel != kNoReceiver && sink.has_texels()) sink.texel(way, s.texel, packet.scale[lane] * s.inverse_density);
-        else sink.light(way, group.set, s.weight * packet.scale[lane]);
+        if (s.texel != kNoReceiver && sink.has_texels())
+            sink.texel(way, s.texel, packet.scale[lane] * s.inverse_density);
+        else
+            sink.light(way, group.set, s.weight * packet.scale[lane]);
     };
     if (packet.lit[lane]) return book(through);
-    const Ray ray{{packet.rays.ox[lane], packet.rays.oy[lane], packet.rays.oz[lane]}, s.direction, 0.0f, shadow_end(g.tracer, s)};
+    const Ray ray{
+        {packet.rays.ox[lane], packet.rays.oy[lane], packet.rays.oz[lane]}, s.direction, 0.0f, shadow_end(g.tracer, s)};
     through_shadow<Sink>(g.scene, g.tracer, ray, through, book);
 }
 
-template <class Sink> void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t sample) {
+template <class Sink>
+void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t sample) {
     for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
-        if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f)) arrive(packet, lane, tile.first + first + lane);
+        if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f))
+            arrive(packet, lane, tile.first + first + lane);
         sink.end_sample(first + lane, first_sample + sample, packet.local[lane], scale);
     }
 }
 
-template <class Sink> uint64_t DirectSampler<Sink>::run() {
+template <class Sink>
+uint64_t DirectSampler<Sink>::run() {
     ShadowPacket packet{};
     uint64_t rays = 0;
     for (uint32_t sample = 0; sample < group.samples; ++sample) {
@@ -102,13 +115,17 @@ template <class Sink> uint64_t DirectSampler<Sink>::run() {
 }
 
 /// Every group of a tile, each as the mean over its own samples.
-template <class Sink> uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis, uint32_t seed, const Sink& sink) {
+template <class Sink>
+uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
+                    uint32_t seed, const Sink& sink) {
     uint64_t rays = 0;
     uint32_t first_sample = 0;
     for (const DirectGroups::Group& g : groups.groups()) {
         if (g.samples == 0) continue;
         const uint32_t own_seed = g.set == kNoElement ? seed : hash_combine(seed, g.set);
-        rays += DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, 1.0f / static_cast<float>(g.samples), first_sample}.run();
+        rays +=
+            DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, 1.0f / static_cast<float>(g.samples), first_sample}
+                .run();
         first_sample += (g.samples + 1) & ~1u; // samples of two groups never make a pair
     }
     return rays;
@@ -116,12 +133,17 @@ template <class Sink> uint64_t run_groups(const GatherScene& scene, const Direct
 
 } // namespace
 
-uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile, const MisCounts& mis, uint32_t seed, TileSums& sums) {
-    return group.samples == 0 ? 0 : DirectSampler<PlainSink>{scene, group, tile, mis, seed, PlainSink(nullptr, sums)}.run();
+uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile,
+                       const MisCounts& mis, uint32_t seed, TileSums& sums) {
+    return group.samples == 0 ? 0
+                              : DirectSampler<PlainSink>{scene, group, tile, mis, seed, PlainSink(nullptr, sums)}.run();
 }
 
-uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis, uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums) {
-    if (scene.scene.has_switches()) return run_groups(scene, groups, tile, mis, seed, TermSink<true>(scene.scene, rows, table, limits, sums));
+uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
+                       uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits,
+                       TermSums& sums) {
+    if (scene.scene.has_switches())
+        return run_groups(scene, groups, tile, mis, seed, TermSink<true>(scene.scene, rows, table, limits, sums));
     return run_groups(scene, groups, tile, mis, seed, TermSink<false>(scene.scene, rows, table, limits, sums));
 }
 

@@ -18,19 +18,23 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
             if (r == kNoReceiver || glm::dot(g.receivers.frame[r].z, g.receivers.frame[own].z) < 0.5f) continue;
             const Vec3 to = g.receivers.origins(r)[0] - p;
             const float distance = glm::dot(to, to);
-            if (distance >= best_distance || g.tracer.intersect({p + up, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss) continue;
+            if (distance >= best_distance || g.tracer.intersect({p + up, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss)
+                continue;
             best = t;
             best_distance = distance;
         }
     return best;
 }
 
-uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance, TileSums& sums) {
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance,
+                     TileSums& sums) {
     return run_gather(scene, tile, options, PlainSink(radiance, sums));
 }
 
-uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums) {
-    if (scene.scene.has_switches()) return run_gather(scene, tile, options, TermSink<true>(scene.scene, rows, table, limits, sums));
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows,
+                     const TermTable& table, const TermLimits& limits, TermSums& sums) {
+    if (scene.scene.has_switches())
+        return run_gather(scene, tile, options, TermSink<true>(scene.scene, rows, table, limits, sums));
     return run_gather(scene, tile, options, TermSink<false>(scene.scene, rows, table, limits, sums));
 }
 

@@ -20,12 +20,12 @@ struct GatherScene {
 
 /// What one gather collects.
 struct GatherOptions {
-    uint32_t samples = 64;       ///< rays per receiver, a power of two
-    float share = 1.0f;          ///< cosine share of the ray density; 1 for irradiance alone
-    bool emission = false;       ///< count what emissive surfaces and the sky send directly
-    bool unmapped_direct = false; ///< surfaces without lightmap reflect their direct light too
+    uint32_t samples = 64;                ///< rays per receiver, a power of two
+    float share = 1.0f;                   ///< cosine share of the ray density; 1 for irradiance alone
+    bool emission = false;                ///< count what emissive surfaces and the sky send directly
+    bool unmapped_direct = false;         ///< surfaces without lightmap reflect their direct light too
     const DirectGroups* direct = nullptr; ///< emitter samples that share the emission by MIS
-    uint32_t first_sample = 0;   ///< of the receiver's sequence, a multiple of samples
+    uint32_t first_sample = 0;            ///< of the receiver's sequence, a multiple of samples
     uint32_t seed = 0;
 };
 
@@ -37,7 +37,8 @@ uint32_t texel_on_side(const GatherScene& scene, uint32_t triangle, uint32_t tex
 /// stratum by stratum so that rays of a packet stay together (algorithms.md 5.5), and adds what
 /// they meet to sums. Receivers count as lanes of the tile. Returns the rays traced.
 /// radiance: [page texels] outgoing radiance of the surfaces, w = TexelFlag bits; null: none.
-uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance, TileSums& sums);
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance,
+                     TileSums& sums);
 
 /// Which terms a pass keeps.
 struct TermLimits {
@@ -46,6 +47,7 @@ struct TermLimits {
 
 /// The same for scenes with elements: rows holds each texel's radiance per term (null: none), sums
 /// collects per term.
-uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums);
+uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows,
+                     const TermTable& table, const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

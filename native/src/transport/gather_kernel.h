@@ -11,11 +11,12 @@
 
 namespace ajar {
 
-template <class Sink> struct Gatherer {
+template <class Sink>
+struct Gatherer {
     using Through = typename Sink::Through;
-    static constexpr int kMaxLayers = 64;        ///< transmissive or switchable surfaces one gather ray may cross
-    static constexpr int kMaxUnmapped = 12;      ///< consecutive surfaces without lightmap
-    static constexpr float kNearTexels = 4.0f;   ///< a solid's inside closer than this speaks for an invalid receiver
+    static constexpr int kMaxLayers = 64;         ///< transmissive or switchable surfaces one gather ray may cross
+    static constexpr int kMaxUnmapped = 12;       ///< consecutive surfaces without lightmap
+    static constexpr float kNearTexels = 4.0f;    ///< a solid's inside closer than this speaks for an invalid receiver
     static constexpr float kLeastThrough = 1e-4f; ///< less light than this is not followed
 
     const GatherScene& g;
@@ -59,7 +60,8 @@ template <class Sink> struct Gatherer {
             weight[lane] = 1.0f / hemisphere_pdf(std::max(w.z, 1e-6f), o.share);
             // Neighbouring strata visit all positions, and so does each stratum over the batches, in an
             // order that does not follow the sequence.
-            const uint32_t turn = shuffle_index(sample / StratifiedBatch::kRays, hash32(g.receivers.texel[r] ^ o.seed)) & 0xffffu;
+            const uint32_t turn =
+                shuffle_index(sample / StratifiedBatch::kRays, hash32(g.receivers.texel[r] ^ o.seed)) & 0xffffu;
             const Vec3 p = g.receivers.origins(r)[(stratum + turn) % k_count];
             packet.set(lane, p, g.receivers.frame[r].to_world(w), std::numeric_limits<float>::infinity());
         }
@@ -79,12 +81,15 @@ template <class Sink> struct Gatherer {
         const uint32_t triangle = packet.triangle[lane], receiver = tile.first + local;
         const Vec3 w = packet.direction(lane);
         const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
-        const uint8_t special = SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch | (o.emission ? SurfaceTable::kEmits : 0);
-        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z), hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
+        const uint8_t special = SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch |
+                                (o.emission ? SurfaceTable::kEmits : 0);
+        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z),
+                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
         const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, w};
         const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
         const Through through = sink.start(g.scene, g.receivers.triangle[receiver]);
-        if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special)) return first_hit(ray, hit, through, from);
+        if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special))
+            return first_hit(ray, hit, through, from);
         walk(ray, hit, through, from, kMaxLayers);
     }
 
@@ -92,14 +97,17 @@ template <class Sink> struct Gatherer {
     void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers) {
         while (layers-- > 0) {
             std::vector<Hit> switches;
-            if (Sink::kSwitches && hit.triangle != kMiss && (g.surfaces.flags(hit.triangle) & SurfaceTable::kSwitch) != 0) {
+            if (Sink::kSwitches && hit.triangle != kMiss &&
+                (g.surfaces.flags(hit.triangle) & SurfaceTable::kSwitch) != 0) {
                 ++rays;
                 hit = g.tracer.intersect(ray, kMaskGather);
                 Ray part = ray;
                 if (hit.triangle != kMiss) part.tfar = hit.t;
                 g.tracer.all_hits(part, kMaskGatherSwitch, switches);
             }
-            if (switches.empty() ? !end_segment(ray, hit, through, from, layers) : !pass_switches(ray, switches, 0, hit, through, from, layers)) return;
+            if (switches.empty() ? !end_segment(ray, hit, through, from, layers)
+                                 : !pass_switches(ray, switches, 0, hit, through, from, layers))
+                return;
             ray.tnear = next_tnear(hit.t);
             ++rays;
             hit = g.tracer.intersect(ray, kMaskGatherAll);
@@ -117,14 +125,16 @@ template <class Sink> struct Gatherer {
 
     /// Switchable surfaces from number next on, then the fixed hit behind them. A way that goes on
     /// behind a surface which is there is followed to its end here; true if the plain one goes on.
-    bool pass_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through, const Origin& from, int layers) {
+    bool pass_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
+                       const Origin& from, int layers) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Hit& hit = switches[next];
                 const Presence p = g.scene.presence(hit.triangle);
                 const uint8_t f = g.surfaces.flags(hit.triangle);
                 Through there = through;
-                if (there.condition.require(p.element, p.state) && !is_inside(hit, f) && shine(ray, hit, f, there, from, layers) &&
+                if (there.condition.require(p.element, p.state) && !is_inside(hit, f) &&
+                    shine(ray, hit, f, there, from, layers) &&
                     pass_switches(ray, switches, next + 1, end, there, from, layers)) {
                     Ray behind = ray;
                     behind.tnear = next_tnear(end.t);
@@ -146,20 +156,25 @@ template <class Sink> struct Gatherer {
         return shine(ray, hit, f, through, from, layer);
     }
 
-    static bool is_inside(const Hit& hit, uint8_t f) { return hit.back && (f & (SurfaceTable::kOneSided | SurfaceTable::kSolid)) != 0; }
+    static bool is_inside(const Hit& hit, uint8_t f) {
+        return hit.back && (f & (SurfaceTable::kOneSided | SurfaceTable::kSolid)) != 0;
+    }
 
     /// What a surface sends along the ray; true if light from behind gets through, dimmed.
     bool shine(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, int layer) {
         const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
         if (mapped && !(f & SurfaceTable::kTransmits)) {
-            if (o.emission && (f & SurfaceTable::kEmits)) emission(g.scene.emission(hit.triangle, hit.u, hit.v), ray, hit, through, from);
+            if (o.emission && (f & SurfaceTable::kEmits))
+                emission(g.scene.emission(hit.triangle, hit.u, hit.v), ray, hit, through, from);
             first_hit(ray, hit, through, from);
             return false;
         }
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
         if (f & SurfaceTable::kEmits) emission(s.emission, ray, hit, through, from);
-        if (mapped) first_hit(ray, hit, through, from);
-        else unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0);
+        if (mapped)
+            first_hit(ray, hit, through, from);
+        else
+            unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0);
         through.color *= s.transmittance;
         return max_component(through.color) > kLeastThrough;
     }
@@ -197,7 +212,8 @@ template <class Sink> struct Gatherer {
         float weight = 1.0f, density = 0.0f;
         if ((sink.flags(texel) & kTexelBright) != 0 && o.direct != nullptr)
             if (const uint32_t e = g.emitters.bright_emitter(texel, density); e != EmitterSet::kNone) {
-                const float facing = std::max(std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle))), 1e-9f);
+                const float facing =
+                    std::max(std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle))), 1e-9f);
                 weight = mis_weight(e, density * hit.t * hit.t / facing, from);
             }
         sink.texel(through, texel, weight);
@@ -236,12 +252,15 @@ template <class Sink> struct Gatherer {
         const float cosine = glm::dot(s.direction, n);
         if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return;
         if constexpr (Sink::kSwitches)
-            if (const Presence there = g.emitters.presence(e); there.element != kNoElement && !through.condition.require(there.element, there.state)) return;
+            if (const Presence there = g.emitters.presence(e);
+                there.element != kNoElement && !through.condition.require(there.element, there.state))
+                return;
         const Vec3 light = s.weight * (cosine * kInvPi / chance);
         const Ray ray{p, s.direction, 0.0f, shadow_end(g.tracer, s)};
         if (!s.casts_shadow) return sink.light(through, g.emitters.set_of(e), light);
         if (g.tracer.intersect(ray, kMaskShadowOpaque).triangle != kMiss) return;
-        through_shadow<Sink>(g.scene, g.tracer, ray, through, [&](const Through& t) { sink.light(t, g.emitters.set_of(e), light); });
+        through_shadow<Sink>(g.scene, g.tracer, ray, through,
+                             [&](const Through& t) { sink.light(t, g.emitters.set_of(e), light); });
     }
 
     /// Follows a ray of such a stand-in. What emitter samples find there is left to them.
@@ -264,18 +283,21 @@ template <class Sink> struct Gatherer {
 
     bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layers) {
         if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, layers);
-        if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit()) sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
+        if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit())
+            sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
         return false;
     }
 
     /// As pass_switches, along such a path.
-    bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through, uint32_t seed, int depth, int layers) {
+    bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
+                       uint32_t seed, int depth, int layers) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Presence p = g.scene.presence(switches[next].triangle);
                 const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
                 Through there = through;
-                if (there.condition.require(p.element, p.state) && path_shine(ray, switches[next], there, own_seed, depth, layers) &&
+                if (there.condition.require(p.element, p.state) &&
+                    path_shine(ray, switches[next], there, own_seed, depth, layers) &&
                     path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers)) {
                     Ray behind = ray;
                     behind.tnear = next_tnear(end.t);
@@ -297,15 +319,19 @@ template <class Sink> struct Gatherer {
             return false;
         }
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
-        if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone) sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
-        if (!mapped) unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth);
-        else if (sink.has_texels()) sink.texel(through, lit_texel(ray, hit), 1.0f);
+        if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone)
+            sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
+        if (!mapped)
+            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth);
+        else if (sink.has_texels())
+            sink.texel(through, lit_texel(ray, hit), 1.0f);
         through.color *= s.transmittance;
         return max_component(through.color) > kLeastThrough;
     }
 };
 
-template <class Sink> uint64_t run_gather(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Sink& sink) {
+template <class Sink>
+uint64_t run_gather(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Sink& sink) {
     Gatherer<Sink> gatherer{scene, options, tile, sink, static_cast<float>(options.samples), 0, {}};
     gatherer.run();
     return gatherer.rays;

@@ -24,7 +24,9 @@ public:
     bool has_texels() const { return radiance_ != nullptr; }
     uint8_t flags(uint32_t texel) const { return static_cast<uint8_t>(radiance_[texel].w); }
     void light(const Through& through, uint32_t, const Vec3& radiance) { arrived_ += through.color * radiance; }
-    void texel(const Through& through, uint32_t texel, float weight) { arrived_ += through.color * Vec3(radiance_[texel]) * weight; }
+    void texel(const Through& through, uint32_t texel, float weight) {
+        arrived_ += through.color * Vec3(radiance_[texel]) * weight;
+    }
     void add_inside(uint32_t lane) { sums_.inside[lane] += 1.0f; }
     void add_cosine(uint32_t lane, float value) { sums_.cosine_sum[lane] += value; }
     /// Books the light of one sample from direction w (local frame), times scale.
@@ -42,7 +44,8 @@ private:
 };
 
 /// A colour per term. Without switchable surfaces terms are light sets and nothing else.
-template <bool Switches> class TermSink {
+template <bool Switches>
+class TermSink {
 public:
     static constexpr bool kSwitches = Switches;
     struct Through {
@@ -50,36 +53,50 @@ public:
         Condition condition;
     };
 
-    TermSink(const Snapshot& scene, const TermRows* rows, const TermTable& table, const TermLimits& limits, TermSums& sums)
-        : scene_(scene), rows_(rows), table_(table), limits_(limits), sums_(sums),
-          all_combine_(std::all_of(scene.elements.begin(), scene.elements.end(), [](const Element& e) { return e.combines; })) {}
+    TermSink(const Snapshot& scene, const TermRows* rows, const TermTable& table, const TermLimits& limits,
+             TermSums& sums)
+        : scene_(scene),
+          rows_(rows),
+          table_(table),
+          limits_(limits),
+          sums_(sums),
+          all_combine_(
+              std::all_of(scene.elements.begin(), scene.elements.end(), [](const Element& e) { return e.combines; })) {}
 
     /// A receiver on a switchable surface matters only while that surface is there.
     Through start(const Snapshot& scene, uint32_t triangle) const {
         Through t;
         if constexpr (Switches)
-            if (const Presence p = scene.presence(triangle); p.element != kNoElement) t.condition.assume(p.element, p.state);
+            if (const Presence p = scene.presence(triangle); p.element != kNoElement)
+                t.condition.assume(p.element, p.state);
         return t;
     }
     bool has_texels() const { return rows_ != nullptr; }
     uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
-    void light(const Through& through, uint32_t set, const Vec3& radiance) { arrive(through.condition, Term(set), through.color * radiance); }
+    void light(const Through& through, uint32_t set, const Vec3& radiance) {
+        arrive(through.condition, Term(set), through.color * radiance);
+    }
     void texel(const Through& through, uint32_t texel, float weight) {
         const Vec3 scale = through.color * weight;
         // Most ways meet no switchable surface: each term passes as it is.
         if (!Switches || through.condition.empty())
-            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) sums_.arrive(sums_.slot_of(e->term), e->color * scale);
+            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
+                sums_.arrive(sums_.slot_of(e->term), e->color * scale);
         else
-            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e) arrive(through.condition, table_[e->term], e->color * scale);
+            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
+                arrive(through.condition, table_[e->term], e->color * scale);
     }
     void add_inside(uint32_t lane) { sums_.add_inside(lane); }
     void add_cosine(uint32_t lane, float value) { sums_.add_cosine(lane, value); }
-    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) { sums_.end_sample(lane, sample, w, scale); }
+    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
+        sums_.end_sample(lane, sample, w, scale);
+    }
 
 private:
     void arrive(const Condition& condition, const Term& term, const Vec3& light) {
         condition.expand(term, limits_.order, [&](const Term& product, float sign) {
-            if (all_combine_ || product.order() < 2 || may_combine(product)) sums_.arrive(sums_.slot_of(product), light * sign);
+            if (all_combine_ || product.order() < 2 || may_combine(product))
+                sums_.arrive(sums_.slot_of(product), light * sign);
         });
     }
     bool may_combine(const Term& term) const {
@@ -98,12 +115,15 @@ private:
 };
 
 /// Light that passes switchable surfaces: each is absent, or there and perhaps lets some through.
-template <class Sink, class Emit> void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_t next, typename Sink::Through through, Emit&& emit) {
+template <class Sink, class Emit>
+void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_t next, typename Sink::Through through,
+                      Emit&& emit) {
     for (; next < hits.size(); ++next) {
         const Hit& hit = hits[next];
         const Presence p = scene.presence(hit.triangle);
         auto there = through;
-        if (scene.materials[scene.triangles[hit.triangle].material].transmits && there.condition.require(p.element, p.state)) {
+        if (scene.materials[scene.triangles[hit.triangle].material].transmits &&
+            there.condition.require(p.element, p.state)) {
             there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
             if (max_component(there.color) > 0.0f) through_switches<Sink>(scene, hits, next + 1, there, emit);
         }
@@ -114,7 +134,9 @@ template <class Sink, class Emit> void through_switches(const Snapshot& scene, c
 
 /// Follows a shadow ray that fixed opaque surfaces leave free through tinted and switchable ones.
 /// Calls emit(through) for each way in which light gets along it.
-template <class Sink, class Emit> void through_shadow(const Snapshot& scene, const Tracer& tracer, const Ray& ray, typename Sink::Through through, Emit&& emit) {
+template <class Sink, class Emit>
+void through_shadow(const Snapshot& scene, const Tracer& tracer, const Ray& ray, typename Sink::Through through,
+                    Emit&& emit) {
     if (tracer.has_transmissive()) through.color *= tracer.tint(ray);
     if (!(max_component(through.color) > 0.0f)) return;
     if constexpr (Sink::kSwitches) {

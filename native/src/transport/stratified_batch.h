@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/owen_sobol.h"
-#include "receiver/lightmap.h"
-
 #include <bit>
 #include <vector>
+
+#include "base/owen_sobol.h"
+#include "receiver/lightmap.h"
 
 namespace ajar {
 
@@ -16,7 +16,8 @@ struct StratifiedBatch {
 
     /// A block of count samples holds one point per cell of a grid; cells are visited in Morton
     /// order, so that neighbours in the order are neighbours on the hemisphere.
-    void fill(const LightmapReceivers& receivers, const Tile& tile, uint32_t first_sample, uint32_t count, uint32_t seed) {
+    void fill(const LightmapReceivers& receivers, const Tile& tile, uint32_t first_sample, uint32_t count,
+              uint32_t seed) {
         x.resize(size_t{count} * kTileReceivers);
         y.resize(size_t{count} * kTileReceivers);
         const auto log2 = static_cast<uint32_t>(std::countr_zero(count));

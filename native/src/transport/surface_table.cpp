@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport/surface_table.h"
 
-#include "base/hash.h"
-#include "receiver/uv_raster.h"
-
 #include <bit>
 #include <unordered_map>
+
+#include "base/hash.h"
+#include "receiver/uv_raster.h"
 
 namespace ajar {
 
@@ -13,7 +13,8 @@ namespace {
 
 struct PositionHash {
     size_t operator()(const Vec3& p) const {
-        return hash_combine(hash_combine(std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f)), std::bit_cast<uint32_t>(p.z + 0.0f));
+        return hash_combine(hash_combine(std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f)),
+                            std::bit_cast<uint32_t>(p.z + 0.0f));
     }
 };
 
@@ -22,7 +23,8 @@ struct PositionHash {
 bool is_closed(const Mesh& mesh) {
     std::unordered_map<Vec3, uint32_t, PositionHash> weld;
     std::vector<uint32_t> id(mesh.positions.size());
-    for (size_t i = 0; i < id.size(); ++i) id[i] = weld.try_emplace(mesh.positions[i], static_cast<uint32_t>(i)).first->second;
+    for (size_t i = 0; i < id.size(); ++i)
+        id[i] = weld.try_emplace(mesh.positions[i], static_cast<uint32_t>(i)).first->second;
     std::unordered_map<uint64_t, int> edges; // +1 along, -1 against: 0 and used twice in a closed, oriented mesh
     std::unordered_map<uint64_t, int> uses;
     for (size_t c = 0; c < mesh.corner_vertex.size(); ++c) {
@@ -55,7 +57,12 @@ SurfaceTable::SurfaceTable(const Snapshot& scene) : entries_(scene.triangles.siz
         if (instance.lightmapped) {
             const auto uv = texel_triangle(scene, i);
             const Page& page = scene.pages[instance.page];
-            entries_[i] = {uv[0], uv[1] - uv[0], uv[2] - uv[0], static_cast<uint32_t>(page.first_texel), static_cast<uint16_t>(page.width), static_cast<uint16_t>(page.height)};
+            entries_[i] = {uv[0],
+                           uv[1] - uv[0],
+                           uv[2] - uv[0],
+                           static_cast<uint32_t>(page.first_texel),
+                           static_cast<uint16_t>(page.width),
+                           static_cast<uint16_t>(page.height)};
         }
         flags_[i] = f;
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "accel/ray.h"
 #include "base/parallel.h"
-
-#include <vector>
 
 namespace ajar {
 
@@ -20,7 +20,7 @@ public:
         kPlain = 0,
         kEmits = 1,
         kTransmits = 2,
-        kUnmapped = 4,  ///< no lightmap: its light is estimated at the hit
+        kUnmapped = 4, ///< no lightmap: its light is estimated at the hit
         kOneSided = 8,
         kMirrored = 16, ///< the normal is minus the cross product
         kSolid = 32,    ///< closed mesh: nothing is seen from inside

@@ -13,11 +13,11 @@ class TermSums {
 public:
     /// One term at one receiver.
     struct alignas(64) Block {
-        float sh[kShCount] = {};     ///< luminance of incident radiance
+        float sh[kShCount] = {}; ///< luminance of incident radiance
         float irradiance[3] = {};
-        float last = 0.0f;           ///< luminance of the last sample that brought light
+        float last = 0.0f; ///< luminance of the last sample that brought light
         float last_sample = -1.0f;
-        double squares = 0.0;        ///< sum of squared differences inside pairs of samples
+        double squares = 0.0; ///< sum of squared differences inside pairs of samples
 
         // (a - b)^2 in parts: samples without light for the term need no visit.
         void book(uint32_t sample, float value) {
@@ -29,7 +29,12 @@ public:
         Vec3 color() const { return {irradiance[0], irradiance[1], irradiance[2]}; }
     };
 
-    explicit TermSums(const TermTable& table) : table_(table), slot_of_id_(table.count(), kNone), total_(kTileReceivers), cosine_sum_(kTileReceivers, 0.0f), inside_(kTileReceivers, 0.0f) {}
+    explicit TermSums(const TermTable& table)
+        : table_(table),
+          slot_of_id_(table.count(), kNone),
+          total_(kTileReceivers),
+          cosine_sum_(kTileReceivers, 0.0f),
+          inside_(kTileReceivers, 0.0f) {}
 
     uint32_t slots() const { return static_cast<uint32_t>(terms_.size()); }
     const Term& term(uint32_t slot) const { return terms_[slot]; }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "base/math.h"
-#include "scene/term.h"
-
 #include <algorithm>
 #include <unordered_map>
 #include <vector>
+
+#include "base/math.h"
+#include "scene/term.h"
 
 namespace ajar {
 
@@ -46,7 +46,7 @@ struct TermColor {
 struct TermRows {
     std::vector<uint64_t> first; ///< [texels + 1]
     std::vector<TermColor> entries;
-    std::vector<uint8_t> flags;  ///< [texels] TexelFlag
+    std::vector<uint8_t> flags; ///< [texels] TexelFlag
 
     const TermColor* begin(uint32_t texel) const { return entries.data() + first[texel]; }
     const TermColor* end(uint32_t texel) const { return entries.data() + first[texel + 1]; }

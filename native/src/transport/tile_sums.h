@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "receiver/lightmap.h"
 #include "sampling/sh.h"
-
-#include <vector>
 
 namespace ajar {
 
@@ -12,12 +12,13 @@ namespace ajar {
 /// adds to the irradiance along z and to the spherical harmonics of the luminance.
 struct alignas(32) TileSums {
     float irradiance[3][kTileReceivers];
-    float sh[kShCount][kTileReceivers];   ///< luminance of incident radiance
-    float previous[kTileReceivers];       ///< luminance of the last odd sample, for pairs
-    float cosine_sum[kTileReceivers];     ///< sum of cosine / pdf; its expectation is pi per ray
-    float inside[kTileReceivers];         ///< rays that met the inside of a solid close by
-    double pairs[kTileReceivers];         ///< sum of squared differences inside pairs of strata; squares of extreme powers leave a float's range
-    std::vector<float> sh_rgb;            ///< [27][kTileReceivers] if colour is kept
+    float sh[kShCount][kTileReceivers]; ///< luminance of incident radiance
+    float previous[kTileReceivers];     ///< luminance of the last odd sample, for pairs
+    float cosine_sum[kTileReceivers];   ///< sum of cosine / pdf; its expectation is pi per ray
+    float inside[kTileReceivers];       ///< rays that met the inside of a solid close by
+    double pairs[kTileReceivers]; ///< sum of squared differences inside pairs of strata; squares of extreme powers
+                                  ///< leave a float's range
+    std::vector<float> sh_rgb;    ///< [27][kTileReceivers] if colour is kept
 
     void clear(bool keep_sh) {
         for (auto& c : irradiance) std::fill(std::begin(c), std::end(c), 0.0f);

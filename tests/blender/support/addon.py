@@ -84,11 +84,19 @@ def write_exr(path, width, height, shade):
     own Image.save() would encode the values."""
     pixels = numpy.array([[shade(x, y) for x in range(width)] for y in range(height)], dtype="<f4")
     box = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
-    header = [("channels", "chlist", channels), ("compression", "compression", b"\0"),
-              ("dataWindow", "box2i", box), ("displayWindow", "box2i", box), ("lineOrder", "lineOrder", b"\0"),
-              ("pixelAspectRatio", "float", struct.pack("<f", 1)), ("screenWindowCenter", "v2f", bytes(8)),
-              ("screenWindowWidth", "float", struct.pack("<f", 1))]
+    channels = (
+        b"".join(name + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
+    )
+    header = [
+        ("channels", "chlist", channels),
+        ("compression", "compression", b"\0"),
+        ("dataWindow", "box2i", box),
+        ("displayWindow", "box2i", box),
+        ("lineOrder", "lineOrder", b"\0"),
+        ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        ("screenWindowCenter", "v2f", bytes(8)),
+        ("screenWindowWidth", "float", struct.pack("<f", 1)),
+    ]
     data = struct.pack("<II", 20000630, 2)
     for name, kind, value in header:
         data += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<I", len(value)) + value

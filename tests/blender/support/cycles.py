@@ -89,8 +89,14 @@ def select_only(objects):
 def bake_irradiance(objects, passes=('DIRECT', 'INDIRECT'), layer="AjarLightmap"):
     """Bake into the active images. Cycles stores E / pi: callers multiply by pi."""
     select_only(objects)
-    bpy.ops.object.bake(type='DIFFUSE', pass_filter=set(passes), margin=0, use_clear=True,
-                        target='IMAGE_TEXTURES', uv_layer=layer)
+    bpy.ops.object.bake(
+        type='DIFFUSE',
+        pass_filter=set(passes),
+        margin=0,
+        use_clear=True,
+        target='IMAGE_TEXTURES',
+        uv_layer=layer,
+    )
 
 
 def irradiance(image):

@@ -14,7 +14,7 @@ def read_exr(path):
     with open(path, 'rb') as file:
         data = file.read()
     magic, version = struct.unpack_from('<II', data)
-    if magic != 20000630 or version & 0x1a00:
+    if magic != 20000630 or version & 0x1A00:
         raise ValueError(f"{path}: not a plain scanline OpenEXR file")
     header, at = _read_header(data, 8)
     channels = _read_channels(header['channels'])
@@ -27,8 +27,15 @@ def read_exr(path):
     lines = _LINES[compression]
     for offset in struct.unpack_from(f'<{-(-height // lines)}Q', data, at):
         y, size = struct.unpack_from('<iI', data, offset)
-        _read_chunk(data[offset + 8:offset + 8 + size], compression, y - y0,
-                    min(lines, height - (y - y0)), width, channels, planes)
+        _read_chunk(
+            data[offset + 8 : offset + 8 + size],
+            compression,
+            y - y0,
+            min(lines, height - (y - y0)),
+            width,
+            channels,
+            planes,
+        )
     return {name: plane[::-1].copy() for name, plane in planes.items()}
 
 
@@ -44,8 +51,8 @@ def _read_header(data, at):
     while data[at]:
         name, at = _read_text(data, at)
         _, at = _read_text(data, at)
-        size, = struct.unpack_from('<i', data, at)
-        header[name] = data[at + 4:at + 4 + size]
+        (size,) = struct.unpack_from('<i', data, at)
+        header[name] = data[at + 4 : at + 4 + size]
         at += 4 + size
     return header, at + 1
 

@@ -31,7 +31,7 @@ def sun(**values):
 def emitter(principled=False, flip=False):
     """An emissive square of half a metre above the floor."""
     mesh = bpy.data.meshes.new("Emitter")
-    corners = [(-.25, -.25, 0), (.25, -.25, 0), (.25, .25, 0), (-.25, .25, 0)]
+    corners = [(-0.25, -0.25, 0), (0.25, -0.25, 0), (0.25, 0.25, 0), (-0.25, 0.25, 0)]
     mesh.from_pydata(corners, [], [(0, 1, 2, 3) if flip else (3, 2, 1, 0)])
     mesh.materials.append(_emission_material(principled))
     obj = bpy.data.objects.new("Emitter", mesh)
@@ -85,7 +85,9 @@ def _ramp_image():
 def _plane(name, matrix, size, material):
     mesh = bpy.data.meshes.new(name)
     half = size / 2
-    mesh.from_pydata([(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [], [(0, 1, 2, 3)])
+    mesh.from_pydata(
+        [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [], [(0, 1, 2, 3)]
+    )
     mesh.materials.append(material)
     obj = bpy.data.objects.new(name, mesh)
     bpy.context.scene.collection.objects.link(obj)

@@ -8,8 +8,14 @@ def _point(radius, **more):
 
 
 def _spot(angle, blend, radius=0.0, scale=(1, 1, 1)):
-    return 'lamp', {'kind': 'SPOT', 'energy': 100, 'shadow_soft_size': radius, 'spot_size': angle,
-                    'spot_blend': blend, 'scale': scale}
+    return 'lamp', {
+        'kind': 'SPOT',
+        'energy': 100,
+        'shadow_soft_size': radius,
+        'spot_size': angle,
+        'spot_blend': blend,
+        'scale': scale,
+    }
 
 
 def _sun(angle):
@@ -17,8 +23,15 @@ def _sun(angle):
 
 
 def _area(shape, x, y=None, spread=pi, scale=(1, 1, 1)):
-    return 'lamp', {'kind': 'AREA', 'energy': 100, 'shape': shape, 'size': x, 'size_y': y or x,
-                    'spread': spread, 'scale': scale}
+    return 'lamp', {
+        'kind': 'AREA',
+        'energy': 100,
+        'shape': shape,
+        'size': x,
+        'size_y': y or x,
+        'spread': spread,
+        'scale': scale,
+    }
 
 
 # Square and rectangle lamps far smaller than their distance are left out: the reference itself

@@ -6,8 +6,14 @@ import numpy as np
 
 PAGE_UV = "AjarPage"
 RENDER_UV = "AjarRenderUV"
-_FLAGS = ('visible_camera', 'visible_diffuse', 'visible_glossy', 'visible_transmission',
-          'visible_shadow', 'visible_volume_scatter')
+_FLAGS = (
+    'visible_camera',
+    'visible_diffuse',
+    'visible_glossy',
+    'visible_transmission',
+    'visible_shadow',
+    'visible_volume_scatter',
+)
 _OBJECT_BOUND_NODES = ('ShaderNodeObjectInfo', 'ShaderNodeAttribute', 'ShaderNodeParticleInfo')
 
 
@@ -32,8 +38,9 @@ class Piece:
         self.loop_vertex = _get(mesh.loops, 'vertex_index', 1, np.int32).ravel()
         self.start = _get(mesh.polygons, 'loop_start', 1, np.int32).ravel()
         self.total = _get(mesh.polygons, 'loop_total', 1, np.int32).ravel()
-        self.slot = np.minimum(_get(mesh.polygons, 'material_index', 1, np.int32).ravel(),
-                               len(self.materials) - 1)
+        self.slot = np.minimum(
+            _get(mesh.polygons, 'material_index', 1, np.int32).ravel(), len(self.materials) - 1
+        )
         self.smooth = _get(mesh.polygons, 'use_smooth', 1, np.bool_).ravel()
         self.order = _flipped(self.start, self.total) if np.linalg.det(matrix[:3, :3]) < 0 else None
 
@@ -106,7 +113,8 @@ def _is_object_bound(material):
         if node.bl_idname in _OBJECT_BOUND_NODES:
             return True
         if node.bl_idname == 'ShaderNodeTexCoord' and any(
-                node.outputs[name].is_linked for name in ('Generated', 'Object', 'Normal')):
+            node.outputs[name].is_linked for name in ('Generated', 'Object', 'Normal')
+        ):
             return True
     return False
 
@@ -120,11 +128,14 @@ def build_object(pieces, find_material, name):
     mesh.vertices.add(len(points))
     mesh.vertices.foreach_set('co', points.astype(np.float32).ravel())
     mesh.loops.add(int(first_loop[-1]))
-    mesh.loops.foreach_set('vertex_index', np.concatenate(
-        [p.loop_vertex + f for p, f in zip(pieces, first_point)]).astype(np.int32))
+    mesh.loops.foreach_set(
+        'vertex_index',
+        np.concatenate([p.loop_vertex + f for p, f in zip(pieces, first_point)]).astype(np.int32),
+    )
     mesh.polygons.add(sum(len(p.start) for p in pieces))
-    mesh.polygons.foreach_set('loop_start', np.concatenate(
-        [p.start + f for p, f in zip(pieces, first_loop)]).astype(np.int32))
+    mesh.polygons.foreach_set(
+        'loop_start', np.concatenate([p.start + f for p, f in zip(pieces, first_loop)]).astype(np.int32)
+    )
     mesh.polygons.foreach_set('loop_total', np.concatenate([p.total for p in pieces]).astype(np.int32))
     slots = _add_slots(mesh, pieces, find_material)
     mesh.polygons.foreach_set('material_index', slots)

@@ -19,7 +19,11 @@ def write_png(path, pixels):
     raw = np.concatenate([np.zeros((height, 1), np.uint8), rows.reshape(height, -1)], axis=1)
     with open(path, 'wb') as file:
         file.write(b'\x89PNG\r\n\x1a\n')
-        for kind, body in ((b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 2, 0, 0, 0)),
-                           (b'IDAT', zlib.compress(raw.tobytes(), 6)), (b'IEND', b'')):
-            file.write(struct.pack('>I', len(body)) + kind + body
-                       + struct.pack('>I', zlib.crc32(kind + body)))
+        for kind, body in (
+            (b'IHDR', struct.pack('>IIBBBBB', width, height, 8, 2, 0, 0, 0)),
+            (b'IDAT', zlib.compress(raw.tobytes(), 6)),
+            (b'IEND', b''),
+        ):
+            file.write(
+                struct.pack('>I', len(body)) + kind + body + struct.pack('>I', zlib.crc32(kind + body))
+            )

@@ -4,9 +4,9 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-CELL = 4      # texels along one edge of a receiver's cell
-STRIDE = 8    # texels between cells; the gap keeps receivers apart
-SIZE = 1e-3   # m, edge of a receiver
+CELL = 4  # texels along one edge of a receiver's cell
+STRIDE = 8  # texels between cells; the gap keeps receivers apart
+SIZE = 1e-3  # m, edge of a receiver
 
 
 def image_size(count):
@@ -28,8 +28,12 @@ def quad_corners(point, normal, size):
     tangent = normal.cross(helper).normalized() * (size / 2)
     bitangent = normal.cross(tangent)
     point = Vector(point)
-    return [point - tangent - bitangent, point + tangent - bitangent,
-            point + tangent + bitangent, point - tangent + bitangent]
+    return [
+        point - tangent - bitangent,
+        point + tangent - bitangent,
+        point + tangent + bitangent,
+        point - tangent + bitangent,
+    ]
 
 
 def make_receivers(points, normals, layer="AjarLightmap", size=SIZE):
@@ -54,7 +58,7 @@ def read_receivers(pixels, count):
     means, errors = [], []
     for i in range(count):
         x, y = cell_origin(i, pixels.shape[0])
-        cell = pixels[y:y + CELL, x:x + CELL, :3].reshape(-1, 3).astype(np.float64)
+        cell = pixels[y : y + CELL, x : x + CELL, :3].reshape(-1, 3).astype(np.float64)
         means.append(cell.mean(0))
         errors.append(cell.std(0, ddof=1) / np.sqrt(len(cell)))
     return np.array(means), np.array(errors)

@@ -11,7 +11,9 @@ BATCH = os.path.join(ROOT, "blender_addon", "batch.py")
 def blender(arguments, log):
     """Run `blender -b ARGUMENTS`; output is appended to a log file. CalledProcessError on failure."""
     with open(log, 'a', encoding='utf-8') as file:
-        subprocess.run(['blender', '-b', *arguments], cwd=ROOT, stdout=file, stderr=subprocess.STDOUT, check=True)
+        subprocess.run(
+            ['blender', '-b', *arguments], cwd=ROOT, stdout=file, stderr=subprocess.STDOUT, check=True
+        )
 
 
 def script(name, blend, arguments, log):

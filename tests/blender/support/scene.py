@@ -12,7 +12,7 @@ REPOSITORY = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.
 
 def parse_arguments(parser):
     """Arguments behind '--' of a script that Blender runs."""
-    own = sys.argv[sys.argv.index('--') + 1:] if '--' in sys.argv else []
+    own = sys.argv[sys.argv.index('--') + 1 :] if '--' in sys.argv else []
     try:
         return parser.parse_args(own)
     except SystemExit as error:

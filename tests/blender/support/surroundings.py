@@ -5,9 +5,9 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-DIRECTIONS = 32       # rays of each texel
-OFFSET = 1e-3         # m
-COINCIDENT = 2e-3     # m
+DIRECTIONS = 32  # rays of each texel
+OFFSET = 1e-3  # m
+COINCIDENT = 2e-3  # m
 
 
 def make_tree(pieces):
@@ -16,7 +16,7 @@ def make_tree(pieces):
     for piece in pieces:
         points.append(piece.points)
         for start, total in zip(piece.start, piece.total):
-            faces.append((piece.loop_vertex[start:start + total] + first).tolist())
+            faces.append((piece.loop_vertex[start : start + total] + first).tolist())
         first += len(piece.points)
     return BVHTree.FromPolygons(np.concatenate(points).tolist(), faces)
 

@@ -6,9 +6,9 @@ import bpy
 import numpy as np
 from mathutils import Vector
 
-FAR = 1e4          # m, longest ray
-EYE = 1.6          # m, above the floor
-CLEARANCE = 0.7    # m, free space around the camera
+FAR = 1e4  # m, longest ray
+EYE = 1.6  # m, above the floor
+CLEARANCE = 0.7  # m, free space around the camera
 LOOK_DISTANCE = 12.0  # m, further open space does not make a view better
 
 
@@ -58,18 +58,26 @@ def openness(scene, depsgraph, point, direction):
 
 def best_direction(scene, depsgraph, point):
     """(openness, direction) of the most open view, a little downwards."""
-    options = [Vector((math.cos(a), math.sin(a), -0.12)).normalized()
-               for a in np.linspace(0, 2 * math.pi, 16, endpoint=False)]
+    options = [
+        Vector((math.cos(a), math.sin(a), -0.12)).normalized()
+        for a in np.linspace(0, 2 * math.pi, 16, endpoint=False)
+    ]
     return max(((openness(scene, depsgraph, point, d), d) for d in options), key=lambda pair: pair[0])
 
 
 def candidate_points(scene, count, seed):
     """Player starts, lamps, then random points within the scene's bounds."""
-    starts = [o.matrix_world.translation + Vector((0, 0, 0.8)) for o in scene.objects
-              if str(o.get('classname', '')).startswith('info_player')]
-    lights = [o.matrix_world.translation.copy() for o in scene.objects
-              if o.type == 'LIGHT' and o.data.type != 'SUN']
-    corners = np.array([o.matrix_world @ Vector(c) for o in scene.objects if o.type == 'MESH' for c in o.bound_box])
+    starts = [
+        o.matrix_world.translation + Vector((0, 0, 0.8))
+        for o in scene.objects
+        if str(o.get('classname', '')).startswith('info_player')
+    ]
+    lights = [
+        o.matrix_world.translation.copy() for o in scene.objects if o.type == 'LIGHT' and o.data.type != 'SUN'
+    ]
+    corners = np.array(
+        [o.matrix_world @ Vector(c) for o in scene.objects if o.type == 'MESH' for c in o.bound_box]
+    )
     generator = np.random.default_rng(seed)
     low, high = corners.min(0), corners.max(0)
     generator.shuffle(lights)
