@@ -101,13 +101,6 @@ def test_objects():
     assert eye.hide_get() and bpy.data.objects["Unseen"].hide_viewport and modifier.levels == 0
 
 
-def layout_request():
-    with tempfile.TemporaryDirectory() as folder:
-        mapping = layout_module.write_layout_request(bpy.context, folder, model.layout_settings())
-        with Reader(folder, "layout") as reader:
-            return reader.data, mapping
-
-
 def place(scale):
     return {"page": 0, "scale": [scale, scale], "offset": [0.0, 0.0]}
 

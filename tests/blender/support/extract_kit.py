@@ -172,6 +172,13 @@ def data_counts():
     }
 
 
+def layout_request():
+    with tempfile.TemporaryDirectory() as folder:
+        mapping = layout_module.write_layout_request(bpy.context, folder, model.layout_settings())
+        with Reader(folder, "layout") as reader:
+            return reader.data, mapping
+
+
 def run(tests):
     """Calls every test_* of a module's globals, or those named after '--'; exits with what failed."""
     wanted = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
