@@ -39,6 +39,7 @@ struct Instance {
     uint32_t element = kNoElement;   ///< door or toggle it is a part of
     bool open_pose = false;          ///< door: there while it is open, not while it is closed
     uint32_t light_set = kNoElement; ///< of its emission
+    bool hollow = false;             ///< light shines inside: what it encloses is a room, not a solid
 };
 
 /// One world-space triangle of the flattened scene.
@@ -47,7 +48,7 @@ struct Triangle {
     uint32_t instance;
     uint32_t source; ///< triangle of the instance's mesh
     uint32_t material;
-    bool mirrored; ///< the instance turns the winding: the normal is minus the cross product
+    bool mirrored; ///< the normal is minus the cross product: the instance turns the winding, or the back is baked
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
@@ -65,6 +66,12 @@ enum RayMask : uint32_t {
 struct Presence {
     uint32_t element = kNoElement;
     bool state = true;
+};
+
+/// Which sides of surfaces hold their lightmap.
+struct SurfaceSides {
+    std::vector<uint8_t> turned; ///< per triangle: the side its normal points away from
+    std::vector<uint8_t> hollow; ///< per instance: Instance::hollow
 };
 
 struct Page {

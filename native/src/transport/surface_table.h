@@ -48,7 +48,4 @@ private:
     std::vector<uint8_t> flags_;
 };
 
-/// Whether every edge of the mesh, vertices welded by position, joins exactly two triangles.
-bool is_closed(const Mesh& mesh);
-
 } // namespace ajar

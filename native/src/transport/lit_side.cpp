@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "transport/lit_side.h"
+
+#include <algorithm>
+
+#include "base/owen_sobol.h"
+#include "sampling/warp.h"
+#include "scene/mesh_patch.h"
+#include "transport/shadow.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kMostPoints = 48; ///< per patch
+constexpr uint32_t kLeastPoints = 6;
+constexpr uint32_t kRays = 8;        ///< per point and side
+constexpr uint32_t kLampSamples = 2; ///< per point and side
+constexpr int kMostRounds = 4;       ///< a turned wall changes what its neighbours look at
+constexpr float kFewLamps = 0.05f;   ///< share of lamp samples: a side that more of them reach is lit
+constexpr float kEnclosed = 0.5f;    ///< most rays that may leave the scene from inside a room
+
+/// What one side of a patch sees: shares of its rays, and of its lamp samples.
+struct View {
+    float fronts = 0.0f, backs = 0.0f, misses = 0.0f, lamps = 0.0f;
+};
+
+/// Connected triangles of one instance.
+struct Patch {
+    std::vector<uint32_t> triangles;
+    std::vector<float> running_area;
+    bool closed = false;
+    bool may_turn = true; ///< has a lightmap, and backs that reflect
+    uint32_t instance = 0;
+};
+
+struct Finder {
+    const Snapshot& scene;
+    const Tracer tracer;
+    const EmitterSet emitters;
+    std::vector<Patch> patches;
+    std::vector<uint8_t> turned; ///< per triangle
+
+    Finder(const Snapshot& s, ThreadPool& pool, Progress& progress)
+        : scene(s), tracer(s), emitters(s, pool, progress), turned(s.triangles.size(), 0) {
+        collect();
+    }
+
+    void collect() {
+        std::vector<MeshPatches> of_mesh;
+        for (const Mesh& m : scene.meshes) of_mesh.push_back(find_patches(m));
+        std::vector<uint32_t> first;
+        for (const Instance& i : scene.instances) {
+            first.push_back(static_cast<uint32_t>(patches.size()));
+            patches.resize(patches.size() + of_mesh[i.mesh].count);
+        }
+        for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
+            const Triangle& triangle = scene.triangles[t];
+            const Instance& instance = scene.instances[triangle.instance];
+            const Material& material = scene.materials[triangle.material];
+            const MeshPatches& mesh = of_mesh[instance.mesh];
+            Patch& p = patches[first[triangle.instance] + mesh.patch[triangle.source]];
+            p.triangles.push_back(t);
+            p.running_area.push_back((p.running_area.empty() ? 0.0f : p.running_area.back()) + scene.area(t));
+            p.closed = mesh.closed;
+            p.may_turn = p.may_turn && instance.lightmapped && !material.one_sided;
+            p.instance = triangle.instance;
+        }
+    }
+
+    uint32_t point_count(const Patch& p) const {
+        return std::clamp(static_cast<uint32_t>(p.triangles.size()), kLeastPoints, kMostPoints);
+    }
+
+    /// A ray's share in what a side sees. Tinted surfaces say nothing, from either side.
+    void look(const Ray& ray, View& view, float weight) const {
+        const Hit hit = tracer.intersect(ray, kMaskGatherAll);
+        if (hit.triangle == kMiss)
+            view.misses += weight;
+        else if (!scene.materials[scene.triangles[hit.triangle].material].transmits)
+            (hit.back != (turned[hit.triangle] != 0) ? view.backs : view.fronts) += weight;
+    }
+
+    bool sees_lamp(const Vec3& p, const Vec3& n, uint32_t seed) const {
+        float chance;
+        const uint32_t e = emitters.pick_anywhere(p, n, hash32(seed), chance);
+        if (e == EmitterSet::kNone || e == emitters.sky_emitter()) return false;
+        const EmitterSample s = emitters.sample(e, p, owen_sobol(0, seed));
+        if (!(glm::dot(s.direction, n) > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
+        return tracer.intersect({p, s.direction, 0.0f, shadow_end(tracer, s)}, kMaskWall).triangle == kMiss;
+    }
+
+    View view(const Patch& patch, bool back, uint32_t seed) const {
+        View v;
+        const uint32_t count = point_count(patch);
+        for (uint32_t i = 0; i < count; ++i) {
+            const Vec2 u = owen_sobol(i, seed);
+            const float at = (static_cast<float>(i) + u.x) / static_cast<float>(count) * patch.running_area.back();
+            const auto found = std::upper_bound(patch.running_area.begin(), patch.running_area.end() - 1, at);
+            const uint32_t t = patch.triangles[static_cast<size_t>(found - patch.running_area.begin())];
+            const Vec2 b = sample_triangle(owen_sobol(i, hash32(seed)));
+            const Vec3 n = scene.geometric_normal(t) * (back ? -1.0f : 1.0f);
+            const Vec3 p = tracer.offset(scene.position(t, b.x, b.y), n);
+            const Frame frame = frame_from_normal(n);
+            const uint32_t own = hash_combine(seed, i);
+            for (uint32_t r = 0; r < kRays; ++r)
+                look({p, frame.to_world(sample_hemisphere(owen_sobol(r, own), 1.0f))}, v,
+                     1.0f / static_cast<float>(count * kRays));
+            for (uint32_t l = 0; l < kLampSamples; ++l)
+                if (sees_lamp(p, n, hash_combine(own, l))) v.lamps += 1.0f / static_cast<float>(count * kLampSamples);
+        }
+        return v;
+    }
+
+    /// The front looks into solids. Few props show backs to a sane front: one with holes, or with a
+    /// turned neighbour, shows fronts beside them.
+    static bool is_buried(const View& front, const View& back) {
+        return front.backs >= 0.4f && back.backs <= 0.25f && back.fronts >= front.fronts + 0.3f;
+    }
+    /// The front looks into a dark gap with backs in it, the back into a lit room.
+    static bool is_hidden(const View& front, const View& back) {
+        return front.backs >= std::max(0.2f, 3.0f * back.backs) && back.fronts >= front.fronts + 0.2f &&
+               back.lamps >= kFewLamps && front.lamps <= 0.1f * back.lamps;
+    }
+    /// The front looks out of a closed room into nothing.
+    bool is_inside_out(const Patch& patch, const View& front, const View& back) const {
+        return (patch.closed || !scene.sky.lit()) && front.fronts < 0.25f && back.misses < kEnclosed &&
+               back.lamps >= 2.0f * kFewLamps;
+    }
+    /// Whether the side that the normals point away from is the one to bake.
+    bool should_turn(const Patch& patch, const View& front, const View& back) const {
+        return front.lamps < kFewLamps &&
+               (is_buried(front, back) || is_hidden(front, back) || is_inside_out(patch, front, back));
+    }
+};
+
+} // namespace
+
+SurfaceSides find_lit_sides(const Snapshot& scene, ThreadPool& pool, Progress& progress) {
+    Finder f(scene, pool, progress);
+    SurfaceSides out{std::vector<uint8_t>(scene.triangles.size(), 0), std::vector<uint8_t>(scene.instances.size(), 0)};
+    std::vector<uint8_t> turn(f.patches.size(), 0), lit_inside(f.patches.size(), 0);
+    for (int round = 0; round < kMostRounds; ++round) {
+        std::vector<uint8_t> next = turn;
+        f.turned = out.turned;
+        pool.for_each(
+            f.patches.size(), progress,
+            [&](size_t i) {
+                const Patch& p = f.patches[i];
+                if (p.triangles.empty() || !p.may_turn || turn[i] != 0) return;
+                const auto seed = hash32(static_cast<uint32_t>(i));
+                const View back = f.view(p, true, hash_combine(seed, 1u));
+                lit_inside[i] = p.closed && back.lamps > 0.0f;
+                next[i] = f.should_turn(p, f.view(p, false, seed), back);
+            },
+            false);
+        if (next == turn) break;
+        turn = next;
+        for (size_t i = 0; i < turn.size(); ++i)
+            for (const uint32_t t : f.patches[i].triangles) out.turned[t] = turn[i];
+    }
+    for (size_t i = 0; i < turn.size(); ++i)
+        if (turn[i] != 0 || lit_inside[i] != 0) out.hollow[f.patches[i].instance] = 1;
+    return out;
+}
+
+} // namespace ajar
