@@ -20,9 +20,13 @@ constexpr int kMostRounds = 4;       ///< a turned wall changes what its neighbo
 constexpr float kFewLamps = 0.05f;   ///< share of lamp samples: a side that more of them reach is lit
 constexpr float kEnclosed = 0.5f;    ///< most rays that may leave the scene from inside a room
 
-/// What one side of a patch sees: shares of its rays, and of its lamp samples.
+/// What one side of a patch sees.
 struct View {
-    float fronts = 0.0f, backs = 0.0f, misses = 0.0f, lamps = 0.0f;
+    float fronts = 0.0f, backs = 0.0f, misses = 0.0f; ///< shares of its rays
+    float below = 0.0f;                               ///< share of its rays that leave the scene downwards
+    float lamps = 0.0f;                               ///< share of its points' lamp samples that arrive
+    float lit = 0.0f;                                 ///< share of its rays that meet light or lit surfaces
+    float reach = 0.0f;                               ///< m, mean length of its rays
 };
 
 /// Connected triangles of one instance.
@@ -73,12 +77,26 @@ struct Finder {
     }
 
     /// A ray's share in what a side sees. Tinted surfaces say nothing, from either side.
-    void look(const Ray& ray, View& view, float weight) const {
+    void look(const Ray& ray, View& view, float weight, uint32_t seed) const {
         const Hit hit = tracer.intersect(ray, kMaskGatherAll);
-        if (hit.triangle == kMiss)
+        if (hit.triangle == kMiss) {
             view.misses += weight;
-        else if (!scene.materials[scene.triangles[hit.triangle].material].transmits)
-            (hit.back != (turned[hit.triangle] != 0) ? view.backs : view.fronts) += weight;
+            if (ray.direction.z < 0.0f) view.below += weight;
+            view.reach += weight * scene.diagonal();
+            if (scene.sky.lit()) view.lit += weight;
+            return;
+        }
+        view.reach += weight * hit.t;
+        const Material& material = scene.materials[scene.triangles[hit.triangle].material];
+        if (!material.transmits) (hit.back != (turned[hit.triangle] != 0) ? view.backs : view.fronts) += weight;
+        if (material.emits || material.transmits || is_lit(ray, hit, seed)) view.lit += weight;
+    }
+
+    /// Whether a lamp lights the side of a surface that a ray meets.
+    bool is_lit(const Ray& ray, const Hit& hit, uint32_t seed) const {
+        Vec3 n = scene.geometric_normal(hit.triangle);
+        if (hit.back) n = -n;
+        return sees_lamp(tracer.offset(ray.origin + ray.direction * hit.t, n), n, seed);
     }
 
     bool sees_lamp(const Vec3& p, const Vec3& n, uint32_t seed) const {
@@ -105,7 +123,7 @@ struct Finder {
             const uint32_t own = hash_combine(seed, i);
             for (uint32_t r = 0; r < kRays; ++r)
                 look({p, frame.to_world(sample_hemisphere(owen_sobol(r, own), 1.0f))}, v,
-                     1.0f / static_cast<float>(count * kRays));
+                     1.0f / static_cast<float>(count * kRays), hash_combine(own, 0x10u + r));
             for (uint32_t l = 0; l < kLampSamples; ++l)
                 if (sees_lamp(p, n, hash_combine(own, l))) v.lamps += 1.0f / static_cast<float>(count * kLampSamples);
         }
@@ -117,10 +135,22 @@ struct Finder {
     static bool is_buried(const View& front, const View& back) {
         return front.backs >= 0.4f && back.backs <= 0.25f && back.fronts >= front.fronts + 0.3f;
     }
-    /// The front looks into a dark gap with backs in it, the back into a lit room.
+    /// Lamps shine on the back and hardly on the front, which looks at backs or past the edge of the
+    /// world: no player stands there.
     static bool is_hidden(const View& front, const View& back) {
-        return front.backs >= std::max(0.2f, 3.0f * back.backs) && back.fronts >= front.fronts + 0.2f &&
-               back.lamps >= kFewLamps && front.lamps <= 0.1f * back.lamps;
+        return front.backs + front.below >= 0.1f && back.fronts >= front.fronts && back.lamps >= kFewLamps &&
+               front.lamps <= 0.3f * back.lamps;
+    }
+    /// The front looks into a gap without any light, behind a panel say, the back into the open.
+    /// A dark room is no gap: there is space before its walls.
+    static bool is_in_gap(const View& front, const View& back) {
+        return front.lamps == 0.0f && front.lit < 0.005f && front.reach < 0.5f * back.reach &&
+               back.lamps + back.lit >= 0.1f;
+    }
+    /// The front looks past the edge of the world, where no ground is, the back into a place.
+    static bool is_over_void(const View& front, const View& back) {
+        return front.below >= std::max(0.08f, 5.0f * back.below) && back.fronts >= front.fronts + 0.2f &&
+               back.lamps + back.lit >= 0.04f;
     }
     /// The front looks out of a closed room into nothing.
     bool is_inside_out(const Patch& patch, const View& front, const View& back) const {
@@ -129,8 +159,9 @@ struct Finder {
     }
     /// Whether the side that the normals point away from is the one to bake.
     bool should_turn(const Patch& patch, const View& front, const View& back) const {
+        if (is_over_void(front, back) || is_hidden(front, back)) return true;
         return front.lamps < kFewLamps &&
-               (is_buried(front, back) || is_hidden(front, back) || is_inside_out(patch, front, back));
+               (is_buried(front, back) || is_in_gap(front, back) || is_inside_out(patch, front, back));
     }
 };
 
