@@ -174,7 +174,8 @@ struct Gatherer {
         if (mapped)
             first_hit(ray, hit, through, from);
         else
-            unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0);
+            unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0,
+                     from.cosine);
         through.color *= s.transmittance;
         return max_component(through.color) > kLeastThrough;
     }
@@ -228,23 +229,35 @@ struct Gatherer {
 
     /// Surfaces without a lightmap have no stored light: one emitter sample and one more ray stand
     /// in. Bounces there are free, they do not count as one of the series.
-    void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, uint32_t seed, int depth) {
+    /// cosine: of the ray at its start.
+    void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, uint32_t seed, int depth,
+                  float cosine) {
         if (depth >= kMaxUnmapped || !(max_component(reflectance) > 0.0f)) return;
         Vec3 n = g.scene.geometric_normal(hit.triangle);
         if (hit.back) n = -n;
         const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n);
         through.color *= reflectance;
-        if (o.unmapped_direct) direct_light(p, n, through, hash_combine(seed, 0x11u));
+        if (o.unmapped_direct) direct_light(p, n, through, hash_combine(seed, 0x11u), footprint(ray, hit, n, cosine));
         // Russian roulette by reflectance keeps chains short in dark rooms.
         const float survive = depth == 0 ? 1.0f : std::min(1.0f, max_component(reflectance));
         if (unit_float(hash_combine(seed, 0x22u)) >= survive) return;
-        const Vec3 w = frame_from_normal(n).to_world(sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f));
+        const Vec3 local = sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f);
         through.color /= survive;
-        path({p, w}, through, hash_combine(seed, 0x44u), depth + 1, kMaxLayers);
+        path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), depth + 1, kMaxLayers,
+             local.z);
     }
 
-    /// What one emitter sample sends off a surface at p.
-    void direct_light(const Vec3& p, const Vec3& n, Through through, uint32_t seed) {
+    /// Squared radius of the part of a surface that one ray stands for, m^2.
+    float footprint(const Ray& ray, const Hit& hit, const Vec3& n, float cosine) const {
+        const float density = static_cast<float>(o.samples) * hemisphere_pdf(std::max(cosine, 1e-3f), o.share);
+        const float facing = std::max(std::abs(glm::dot(ray.direction, n)), 0.05f);
+        return hit.t * hit.t * kInvPi / (density * facing);
+    }
+
+    /// What one emitter sample sends off a surface at p. A lamp nearer than the ray's footprint lights
+    /// a spot of it, which this one ray would show far too bright or not at all: the inverse square
+    /// law is rounded off there.
+    void direct_light(const Vec3& p, const Vec3& n, Through through, uint32_t seed, float footprint) {
         float chance;
         const uint32_t e = g.emitters.pick_anywhere(p, n, hash32(seed), chance);
         if (e == EmitterSet::kNone) return;
@@ -255,7 +268,9 @@ struct Gatherer {
             if (const Presence there = g.emitters.presence(e);
                 there.element != kNoElement && !through.condition.require(there.element, there.state))
                 return;
-        const Vec3 light = s.weight * (cosine * kInvPi / chance);
+        const float square = s.distance * s.distance;
+        const float rounded = std::isfinite(square) ? square / (square + footprint) : 1.0f;
+        const Vec3 light = s.weight * (rounded * cosine * kInvPi / chance);
         const Ray ray{p, s.direction, 0.0f, shadow_end(g.tracer, s)};
         if (!s.casts_shadow) return sink.light(through, g.emitters.set_of(e), light);
         if (g.tracer.intersect(ray, kMaskShadowOpaque).triangle != kMiss) return;
@@ -264,7 +279,7 @@ struct Gatherer {
     }
 
     /// Follows a ray of such a stand-in. What emitter samples find there is left to them.
-    void path(Ray ray, Through through, uint32_t seed, int depth, int layers) {
+    void path(Ray ray, Through through, uint32_t seed, int depth, int layers, float cosine) {
         while (layers-- > 0) {
             ++rays;
             const Hit end = g.tracer.intersect(ray, kMaskGather);
@@ -273,16 +288,17 @@ struct Gatherer {
                 Ray part = ray;
                 if (end.triangle != kMiss) part.tfar = end.t;
                 g.tracer.all_hits(part, kMaskGatherSwitch, switches);
-                if (!path_switches(ray, switches, 0, end, through, seed, depth, layers)) return;
-            } else if (!path_end(ray, end, through, seed, depth, layers)) {
+                if (!path_switches(ray, switches, 0, end, through, seed, depth, layers, cosine)) return;
+            } else if (!path_end(ray, end, through, seed, depth, layers, cosine)) {
                 return;
             }
             ray.tnear = next_tnear(end.t);
         }
     }
 
-    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layers) {
-        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, layers);
+    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layers,
+                  float cosine) {
+        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, layers, cosine);
         if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit())
             sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
         return false;
@@ -290,27 +306,28 @@ struct Gatherer {
 
     /// As pass_switches, along such a path.
     bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
-                       uint32_t seed, int depth, int layers) {
+                       uint32_t seed, int depth, int layers, float cosine) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Presence p = g.scene.presence(switches[next].triangle);
                 const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
                 Through there = through;
                 if (there.condition.require(p.element, p.state) &&
-                    path_shine(ray, switches[next], there, own_seed, depth, layers) &&
-                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers)) {
+                    path_shine(ray, switches[next], there, own_seed, depth, layers, cosine) &&
+                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers, cosine)) {
                     Ray behind = ray;
                     behind.tnear = next_tnear(end.t);
-                    path(behind, there, own_seed, depth, layers);
+                    path(behind, there, own_seed, depth, layers, cosine);
                 }
                 if (!through.condition.require(p.element, !p.state)) return false;
             }
         }
-        return path_end(ray, end, through, seed, depth, layers);
+        return path_end(ray, end, through, seed, depth, layers, cosine);
     }
 
     /// Light of one surface on such a path; true if some from behind gets through.
-    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layer) {
+    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layer,
+                    float cosine) {
         const uint8_t f = g.surfaces.flags(hit.triangle);
         if (is_inside(hit, f)) return false;
         const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
@@ -322,7 +339,7 @@ struct Gatherer {
         if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone)
             sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
         if (!mapped)
-            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth);
+            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth, cosine);
         else if (sink.has_texels())
             sink.texel(through, lit_texel(ray, hit), 1.0f);
         through.color *= s.transmittance;
