@@ -19,12 +19,13 @@ def _preset(noise, samples, bounce, direct, positions):
     }
 
 
-# Noise targets are relative standard errors per texel; the rest are engine fields.
+# Noise targets are relative standard errors per texel; the rest are engine fields. Sample counts are
+# the most that a texel gets: the target decides.
 PRESETS = {
-    "DRAFT": _preset(0.20, 256, 32, 16, 4),
-    "PREVIEW": _preset(0.05, 1024, 64, 64, 4),
-    "PRODUCTION": _preset(0.015, 8192, 128, 128, 8),
-    "REFERENCE": _preset(0.005, 65536, 256, 512, 16),
+    "DRAFT": _preset(0.20, 256, 32, 256, 4),
+    "PREVIEW": _preset(0.05, 1024, 64, 1024, 4),
+    "PRODUCTION": _preset(0.015, 8192, 128, 8192, 8),
+    "REFERENCE": _preset(0.005, 65536, 256, 65536, 16),
 }
 
 
