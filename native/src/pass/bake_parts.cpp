@@ -84,8 +84,7 @@ std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const
         const float allowed = s.noise_target * (here.level + floor), budget = allowed * allowed + 1e-30f,
                     gather = std::sqrt(float(pilot_rays.gather) * pooled(&PilotResult::gather_variance)),
                     direct = std::sqrt(float(pilot_rays.direct) * pooled(&PilotResult::direct_variance));
-        if (gathers)
-            plan[i].gather = power_of_two(gather * (gather + direct) / budget, 64, std::max(s.samples, 64u));
+        if (gathers) plan[i].gather = power_of_two(gather * (gather + direct) / budget, 64, std::max(s.samples, 64u));
         plan[i].direct = power_of_two(direct * (gather + direct) / budget, std::min(16u, s.direct_samples),
                                       std::max(s.direct_samples, 1u));
     }

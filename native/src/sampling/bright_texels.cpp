@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bright texels as emitters: a lamp close to a wall leaves a spot that few gather rays find; aimed
 // at, it costs no more noise than an area lamp. MIS keeps the sum with the gather unbiased.
-#include "base/owen_sobol.h"
 #include "sampling/emitters.h"
 
 namespace ajar {
@@ -11,7 +10,6 @@ namespace {
 constexpr uint32_t kClusterTexels = 16;
 constexpr float kClusterNormal = 0.98f;
 constexpr float kClusterSpan = 6.0f; ///< texel edges
-constexpr uint32_t kAnywhereTries = 4;
 
 float area_of(const BrightTexel& t) { return glm::length(glm::cross(t.edge_x, t.edge_y)); }
 
@@ -85,43 +83,6 @@ EmitterSample EmitterSet::sample_bright(const Cluster& c, const Vec3& p, Vec2 u)
     if (!(cosine > 0.0f)) return {};
     const float density = luminance(t.radiance) / c.power * length2 / cosine;
     return {to / length, length, q, t.radiance / density, density, true, false, t.texel, 1.0f / density};
-}
-
-void EmitterSet::weigh_for_anywhere() {
-    anywhere_.clear();
-    float sum = 0.0f;
-    for (uint32_t e = 0; e < count(); ++e) {
-        const Emitter& m = emitters_[e];
-        // A sun or sky lights everything, a lamp its surroundings: strength alone ranks them badly,
-        // its square root keeps all of them in play until importance decides.
-        const float strength = m.kind == Kind::lamp ? luminance(scene_.lights[m.index].intensity) *
-                                                          std::max(scene_.lights[m.index].area, 1.0f)
-                               : m.kind == Kind::sky ? sky_->total()
-                                                     : clusters_[m.index].power;
-        anywhere_.push_back(sum += std::sqrt(strength));
-    }
-}
-
-// Resampled importance sampling (Talbot et al. 2005): few candidates by a global weight, one of
-// them by its importance here. Constant cost, unlike a loop over all emitters.
-uint32_t EmitterSet::pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, float& chance) const {
-    if (anywhere_.empty() || !(anywhere_.back() > 0.0f)) return kNone;
-    uint32_t chosen = kNone;
-    float total = 0.0f, target = 0.0f;
-    for (uint32_t i = 0; i < kAnywhereTries; ++i) {
-        const float u = owen_sobol(i, seed).x;
-        const auto e = static_cast<uint32_t>(std::min<ptrdiff_t>(
-            std::upper_bound(anywhere_.begin(), anywhere_.end(), u * anywhere_.back()) - anywhere_.begin(),
-            static_cast<ptrdiff_t>(anywhere_.size()) - 1));
-        const float global = (anywhere_[e] - (e > 0 ? anywhere_[e - 1] : 0.0f)) / anywhere_.back();
-        const float here = importance(e, p, n);
-        const float weight = here / global;
-        total += weight;
-        // Strata must not tie one decision to the next, or some candidates win too often.
-        if (weight > 0.0f && unit_float(hash_combine(seed, i)) * total < weight) chosen = e, target = here;
-    }
-    chance = chosen != kNone ? target * static_cast<float>(kAnywhereTries) / total : 0.0f;
-    return chosen;
 }
 
 } // namespace ajar

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "sampling/alias_table.h"
 #include "sampling/sky_sampler.h"
 #include "scene/snapshot.h"
 
@@ -119,7 +120,7 @@ private:
     std::vector<float> triangle_density_; ///< pick probability / area
     uint32_t sky_emitter_ = kNone;
     uint32_t emissive_count_ = 0;
-    std::vector<float> anywhere_; ///< running weights over all emitters but bright texels
+    AliasTable anywhere_; ///< over all emitters but bright texels
 
     struct BrightEntry {
         uint32_t emitter;

@@ -21,7 +21,7 @@ inline void concentric(const Vec2& u, float& cosine, float& sine, float& radius2
     const bool wide = std::abs(a) > std::abs(b);
     const float r = wide ? a : b, other = wide ? b : a;
     float s, c;
-    small_sincos(0.25f * kPi * (r != 0.0f ? other / r : 0.0f), s, c);
+    small_sincos(0.25f * kPi * (other / (r != 0.0f ? r : 1.0f)), s, c);
     const float sign = std::copysign(1.0f, r);
     cosine = sign * (wide ? c : s);
     sine = sign * (wide ? s : c);

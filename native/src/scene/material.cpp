@@ -49,7 +49,7 @@ Vec3 pick(const Vec4& v, uint32_t channel) {
     }
 }
 
-Vec3 evaluate(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
+Vec3 evaluate_varying(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
     const Mesh& mesh = scene.meshes[at.mesh];
     Vec3 result(in.value[0], in.value[1], in.value[2]);
     if (in.texture != AJAR_NONE) {
@@ -60,6 +60,13 @@ Vec3 evaluate(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) 
     }
     if (in.color_layer != AJAR_NONE) result *= pick(corner_color(mesh, in.color_layer, at), in.channel);
     return in.invert != 0 ? Vec3(1.0f) - result : result;
+}
+
+/// Most inputs are constants.
+inline Vec3 evaluate(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
+    if (in.texture != AJAR_NONE || in.color_layer != AJAR_NONE) return evaluate_varying(scene, in, at);
+    const Vec3 value(in.value[0], in.value[1], in.value[2]);
+    return in.invert != 0 ? Vec3(1.0f) - value : value;
 }
 
 float weight(const Snapshot& scene, const ajar_closure& c, const MeshPoint& at) {

@@ -16,7 +16,7 @@ struct ShadowPacket {
     RayPacket rays;
     alignas(32) int32_t valid[kLanes];
     EmitterSample sample[kLanes];
-    Vec3 local[kLanes];
+    PacketDirections local; ///< weight: of what is booked
     float scale[kLanes];
     uint32_t emitter[kLanes];
     bool lit[kLanes];
@@ -30,7 +30,7 @@ struct DirectSampler {
     MisCounts mis;
     uint32_t seed;
     Sink sink;
-    float scale = 1.0f;        ///< of what is booked
+    float book_scale = 1.0f;   ///< of what is booked
     uint32_t first_sample = 0; ///< number of the first sample in the sums
 
     bool prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const;
@@ -57,7 +57,7 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, ShadowPacket&
     packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;
-    packet.local[lane] = w;
+    packet.local.set(lane, w, book_scale);
     packet.lit[lane] = !s.casts_shadow;
     packet.rays.set(lane, p, s.direction, shadow_end(g.tracer, s));
     return is_finite(s.weight * packet.scale[lane]);
@@ -90,8 +90,9 @@ void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t 
     for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
         if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f))
             arrive(packet, lane, tile.first + first + lane);
-        sink.end_sample(first + lane, first_sample + sample, packet.local[lane], scale);
+        sink.end_sample(lane, first + lane, first_sample + sample, packet.local);
     }
+    sink.end_packet(first, first_sample + sample, packet.local);
 }
 
 template <class Sink>

@@ -4,10 +4,9 @@
 // The gather kernel, a template over the sink (light_sink.h).
 
 #include "base/owen_sobol.h"
-#include "sampling/warp.h"
 #include "transport/light_sink.h"
 #include "transport/shadow.h"
-#include "transport/stratified_batch.h"
+#include "transport/tile_rays.h"
 
 namespace ajar {
 
@@ -25,7 +24,8 @@ struct Gatherer {
     Sink sink;
     float mis_gather;
     uint64_t rays = 0;
-    StratifiedBatch batch;
+    TileRays tile_rays;
+    uint8_t special; ///< surfaces with such a flag take the long way
 
     /// Where a gather ray comes from.
     struct Origin {
@@ -34,46 +34,52 @@ struct Gatherer {
         uint32_t seed;
     };
 
+    Gatherer(const GatherScene& scene, const GatherOptions& options, const Tile& t, const Sink& s)
+        : g(scene),
+          o(options),
+          tile(t),
+          sink(s),
+          mis_gather(static_cast<float>(options.samples)),
+          tile_rays(scene.receivers, t, options.share, options.seed),
+          special(SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch |
+                  (options.emission ? SurfaceTable::kEmits : SurfaceTable::kPlain)) {}
+
     void run() {
         const uint32_t count = std::min(o.samples, StratifiedBatch::kRays);
         for (uint32_t begin = 0; begin < o.samples; begin += count) {
             g.progress.check_cancel();
-            batch.fill(g.receivers, tile, o.first_sample + begin, count, o.seed);
+            tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays);
             for (uint32_t s = 0; s < count; ++s)
                 for (uint32_t first = 0; first < tile.count; first += kLanes) shoot(first, s, begin + s);
         }
     }
 
     void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
+        const uint32_t count = std::min(kLanes, tile.count - first);
         RayPacket packet;
+        PacketDirections local;
         alignas(32) int32_t valid[kLanes];
-        Vec3 local_direction[kLanes];
-        float weight[kLanes];
         packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
-        const uint32_t k_count = g.receivers.positions_per_texel;
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            const size_t i = size_t{stratum} * kTileReceivers + first + lane;
-            const uint32_t r = tile.first + std::min(first + lane, tile.count - 1);
-            valid[lane] = first + lane < tile.count ? -1 : 0;
-            const Vec3 w = sample_hemisphere({batch.x[i], batch.y[i]}, o.share);
-            local_direction[lane] = w;
-            weight[lane] = 1.0f / hemisphere_pdf(std::max(w.z, 1e-6f), o.share);
-            // Neighbouring strata visit all positions, and so does each stratum over the batches, in an
-            // order that does not follow the sequence.
-            const uint32_t turn =
-                shuffle_index(sample / StratifiedBatch::kRays, hash32(g.receivers.texel[r] ^ o.seed)) & 0xffffu;
-            const Vec3 p = g.receivers.origins(r)[(stratum + turn) % k_count];
-            packet.set(lane, p, g.receivers.frame[r].to_world(w), std::numeric_limits<float>::infinity());
-        }
+        for (uint32_t lane = 0; lane < kLanes; ++lane) valid[lane] = lane < count ? -1 : 0;
+        tile_rays.aim(first, stratum, packet, local);
         g.tracer.intersect(valid, packet);
-        for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
-            const uint32_t local = first + lane;
-            const Vec3& w = local_direction[lane];
-            ++rays;
-            shade(lane, local, packet, sample);
-            sink.add_cosine(local, weight[lane] * w.z);
-            sink.end_sample(local, sample, w, weight[lane]);
+        rays += count;
+        fetch(packet, count);
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            shade(lane, first + lane, packet, sample);
+            sink.end_sample(lane, first + lane, sample, local);
         }
+        sink.add_cosines(first, count, local);
+        sink.end_packet(first, sample, local);
+    }
+
+    /// Calls for what the lanes will read from all over memory, so that they wait for it together.
+    void fetch(const RayPacket& packet, uint32_t count) const {
+        if (!sink.has_texels()) return;
+        for (uint32_t lane = 0; lane < count; ++lane)
+            if (const uint32_t t = packet.triangle[lane];
+                t != kMiss && (g.surfaces.flags(t) & SurfaceTable::kUnmapped) == 0)
+                sink.fetch(g.surfaces.texel(t, packet.u[lane], packet.v[lane]));
     }
 
     /// Most rays meet an ordinary lightmapped surface; all else takes the long way.
@@ -81,13 +87,11 @@ struct Gatherer {
         const uint32_t triangle = packet.triangle[lane], receiver = tile.first + local;
         const Vec3 w = packet.direction(lane);
         const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
-        const uint8_t special = SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch |
-                                (o.emission ? SurfaceTable::kEmits : 0);
-        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z),
-                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
         const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, w};
         const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
         const Through through = sink.start(g.scene, g.receivers.triangle[receiver]);
+        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z),
+                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
         if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special))
             return first_hit(ray, hit, through, from);
         walk(ray, hit, through, from, kMaxLayers);
@@ -349,7 +353,7 @@ struct Gatherer {
 
 template <class Sink>
 uint64_t run_gather(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Sink& sink) {
-    Gatherer<Sink> gatherer{scene, options, tile, sink, static_cast<float>(options.samples), 0, {}};
+    Gatherer<Sink> gatherer(scene, options, tile, sink);
     gatherer.run();
     return gatherer.rays;
 }

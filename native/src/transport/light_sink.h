@@ -23,24 +23,31 @@ public:
     Through start(const Snapshot&, uint32_t) const { return {}; }
     bool has_texels() const { return radiance_ != nullptr; }
     uint8_t flags(uint32_t texel) const { return static_cast<uint8_t>(radiance_[texel].w); }
+    void fetch(uint32_t texel) const { __builtin_prefetch(&radiance_[texel]); }
     void light(const Through& through, uint32_t, const Vec3& radiance) { arrived_ += through.color * radiance; }
     void texel(const Through& through, uint32_t texel, float weight) {
         arrived_ += through.color * Vec3(radiance_[texel]) * weight;
     }
-    void add_inside(uint32_t lane) { sums_.inside[lane] += 1.0f; }
-    void add_cosine(uint32_t lane, float value) { sums_.cosine_sum[lane] += value; }
-    /// Books the light of one sample from direction w (local frame), times scale.
-    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
-        const Vec3 facing = is_finite(arrived_) ? arrived_ * scale : Vec3(0.0f);
+    void add_inside(uint32_t local) { sums_.inside[local] += 1.0f; }
+    void add_cosines(uint32_t first, uint32_t, const PacketDirections& w) {
+        for (uint32_t lane = 0; lane < kLanes; ++lane) sums_.cosine_sum[first + lane] += w.weight[lane] * w.z[lane];
+    }
+    /// Keeps what one sample brought until its packet is complete.
+    void end_sample(uint32_t lane, uint32_t, uint32_t, const PacketDirections&) {
+        for (int c = 0; c < 3; ++c) packet_[c][lane] = arrived_[c];
         arrived_ = Vec3(0.0f);
-        sums_.add_pair(lane, sample, luminance(facing) * w.z);
-        if (facing != Vec3(0.0f)) sums_.add(lane, w, facing);
+    }
+    /// Books the samples of receivers first to first + kLanes.
+    void end_packet(uint32_t first, uint32_t sample, const PacketDirections& w) {
+        sums_.add(first, sample, w, packet_);
+        for (auto& channel : packet_) std::fill(std::begin(channel), std::end(channel), 0.0f);
     }
 
 private:
     const Vec4* radiance_;
     TileSums& sums_;
     Vec3 arrived_{0.0f};
+    alignas(32) float packet_[3][kLanes] = {}; ///< radiance of a packet's samples
 };
 
 /// A colour per term. Without switchable surfaces terms are light sets and nothing else.
@@ -73,6 +80,7 @@ public:
     }
     bool has_texels() const { return rows_ != nullptr; }
     uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
+    void fetch(uint32_t texel) const { __builtin_prefetch(rows_->begin(texel)); }
     void light(const Through& through, uint32_t set, const Vec3& radiance) {
         arrive(through.condition, Term(set), through.color * radiance);
     }
@@ -86,11 +94,14 @@ public:
             for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
                 arrive(through.condition, table_[e->term], e->color * scale);
     }
-    void add_inside(uint32_t lane) { sums_.add_inside(lane); }
-    void add_cosine(uint32_t lane, float value) { sums_.add_cosine(lane, value); }
-    void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
-        sums_.end_sample(lane, sample, w, scale);
+    void add_inside(uint32_t local) { sums_.add_inside(local); }
+    void add_cosines(uint32_t first, uint32_t count, const PacketDirections& w) {
+        for (uint32_t lane = 0; lane < count; ++lane) sums_.add_cosine(first + lane, w.weight[lane] * w.z[lane]);
     }
+    void end_sample(uint32_t lane, uint32_t local, uint32_t sample, const PacketDirections& w) {
+        sums_.end_sample(local, sample, w.at(lane), w.weight[lane]);
+    }
+    void end_packet(uint32_t, uint32_t, const PacketDirections&) {}
 
 private:
     void arrive(const Condition& condition, const Term& term, const Vec3& light) {
