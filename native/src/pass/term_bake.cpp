@@ -6,8 +6,10 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
+constexpr uint32_t kDarkSamples = 2;   ///< per receiver and set, where the source pass found the set dark
+constexpr float kEvenLight = 0.8f;     ///< least over most light of neighbours that lie in no shadow's edge
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
-constexpr float kPruneShare = 0.1f; ///< of a term's threshold that its light must reach to be reflected
+constexpr float kPruneShare = 4.0f; ///< of a term's threshold: light that is dimmer is reflected only by chance
 constexpr float kPlanShare = 0.1f;  ///< terms below this share of a tile's light do not drive its ray counts
 
 uint32_t order_of(uint32_t combinations) {
@@ -19,8 +21,6 @@ float gather_scale(const TermSums& s, uint32_t lane) {
     return s.cosine_sum(lane) > 0.0f ? kPi / s.cosine_sum(lane) : 0.0f;
 }
 
-uint32_t find_slot(const TermSums& sums, const Term& term) { return sums.find(term); }
-
 } // namespace
 
 /// One tile's answer before it is stored.
@@ -28,22 +28,21 @@ struct TermBaker::Estimate {
     TermSums gather, direct;
     RayPlan plan;
     std::vector<Term> terms;
-    std::vector<uint32_t> gather_slot, direct_slot;
+    std::vector<TermIndex> index;                ///< of gather and direct
+    std::vector<std::vector<uint32_t>> terms_at; ///< per lane, those that bring it light, ascending
 
     explicit Estimate(const TermTable& table) : gather(table), direct(table) {}
-    void index() {
+    void finish(uint32_t lanes) {
         terms = union_of_terms({&gather, &direct});
-        for (const Term& t : terms) {
-            gather_slot.push_back(find_slot(gather, t));
-            direct_slot.push_back(find_slot(direct, t));
+        index = {TermIndex(gather, terms), TermIndex(direct, terms)};
+        terms_at.resize(lanes);
+        for (uint32_t lane = 0; lane < lanes; ++lane) {
+            for (const TermIndex& i : index) i.collect(lane, terms_at[lane]);
+            sort_unique(terms_at[lane]);
         }
     }
-    const TermSums::Block* gathered(size_t term, uint32_t lane) const {
-        return gather_slot[term] != TermSums::kNone ? &gather.block(gather_slot[term], lane) : nullptr;
-    }
-    const TermSums::Block* sampled(size_t term, uint32_t lane) const {
-        return direct_slot[term] != TermSums::kNone ? &direct.block(direct_slot[term], lane) : nullptr;
-    }
+    const TermSums::Block* gathered(size_t term, uint32_t lane) const { return index[0].block(term, lane); }
+    const TermSums::Block* sampled(size_t term, uint32_t lane) const { return index[1].block(term, lane); }
     Vec3 irradiance(size_t term, uint32_t lane) const {
         Vec3 e(0.0f);
         if (const auto* b = gathered(term, lane)) e += b->color() * gather_scale(gather, lane);
@@ -60,7 +59,7 @@ struct TermBaker::Estimate {
     }
     Vec3 total(uint32_t lane) const {
         Vec3 e(0.0f);
-        for (size_t t = 0; t < terms.size(); ++t) e += irradiance(t, lane);
+        for (const uint32_t t : terms_at[lane]) e += irradiance(t, lane);
         return e;
     }
     double total_variance(uint32_t lane) const {
@@ -81,25 +80,26 @@ bool TermBaker::gathers() const {
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const {
     TileRows rows;
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
-    std::vector<uint32_t> in_gather, in_direct;
-    for (const Term& t : rows.terms) {
-        in_gather.push_back(find_slot(gather, t));
-        in_direct.push_back(direct != nullptr ? find_slot(*direct, t) : TermSums::kNone);
-    }
+    const TermIndex gathered(gather, rows.terms), sampled(direct != nullptr ? *direct : gather, rows.terms);
+    std::vector<uint32_t> terms;
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const uint32_t r = tile.first + lane;
         const auto [begin, end] = block_of(s_.scene, s_.receivers, tile, r);
         std::vector<std::pair<uint32_t, float>> mates; // lane and factor
-        for (uint32_t q = begin; q < end; ++q)
-            if (q == r || may_share(s_.receivers, q, r))
-                mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
+        terms.clear();
+        for (uint32_t q = begin; q < end; ++q) {
+            if (q != r && !may_share(s_.receivers, q, r)) continue;
+            mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
+            gathered.collect(q - tile.first, terms);
+        }
+        if (direct != nullptr) sampled.collect(lane, terms);
+        sort_unique(terms);
         const size_t before = rows.entries.size();
-        for (uint32_t t = 0; t < rows.terms.size(); ++t) {
+        for (const uint32_t t : terms) {
             Vec3 e(0.0f);
-            if (in_gather[t] != TermSums::kNone)
-                for (const auto& [q, factor] : mates)
-                    e += gather.block(in_gather[t], q).color() * (factor / static_cast<float>(mates.size()));
-            if (in_direct[t] != TermSums::kNone) e += direct->block(in_direct[t], lane).color();
+            for (const auto& [q, factor] : mates)
+                if (const auto* b = gathered.block(t, q)) e += b->color() * (factor / static_cast<float>(mates.size()));
+            if (const auto* b = direct != nullptr ? sampled.block(t, lane) : nullptr) e += b->color();
             if (e != Vec3(0.0f)) rows.entries.push_back({t, e});
         }
         rows.count.push_back(static_cast<uint32_t>(rows.entries.size() - before));
@@ -116,17 +116,23 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     source_ = source_.first.size() > 1 ? add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
-    if (settings_.term_threshold > 0.0f) current_ = prune(current_);
+    if (settings_.term_threshold > 0.0f)
+        current_ = prune(current_, hash_combine(settings_.seed, static_cast<uint32_t>(result_.bounce_means.size())));
 }
 
-/// Leaves out what is too dim to matter once reflected: a small share of what a texel would keep.
-ReceiverRows TermBaker::prune(const ReceiverRows& rows) const {
+/// What is too dim to matter alone once reflected, less than a texel would keep, is left out or made
+/// that bright by chance: rows get short, and their sum stays what it is in the mean.
+ReceiverRows TermBaker::prune(const ReceiverRows& rows, uint32_t seed) const {
     ReceiverRows kept;
     kept.first.reserve(rows.first.size());
     for (uint32_t r = 0; r + 1 < rows.first.size(); ++r) {
-        for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e)
-            if (table_[e->term].is_base() || std::abs(luminance(e->color)) > kPruneShare * threshold_[e->term])
+        for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e) {
+            const float least = kPruneShare * threshold_[e->term], level = max_component(glm::abs(e->color));
+            if (table_[e->term].is_base() || level >= least)
                 kept.entries.push_back(*e);
+            else if (unit_float(hash_combine(hash_combine(seed, s_.receivers.texel[r]), e->term)) * least < level)
+                kept.entries.push_back({e->term, e->color * (least / level)});
+        }
         kept.first.push_back(kept.entries.size());
     }
     return kept;
@@ -143,8 +149,8 @@ void TermBaker::direct_source() {
                                      hash_combine(seed, s_.receivers.texel[tile.first]));
         TermSums direct(table_), gather(table_);
         const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
-        rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, nullptr, table_, limits_,
-                              direct);
+        rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr, table_,
+                              limits_, direct);
         if (rays_needed) {
             GatherOptions o;
             o.samples = gather_rays;
@@ -240,6 +246,25 @@ std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
     return sets;
 }
 
+/// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do.
+void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
+    for (const DirectGroups::Group& g : groups.groups()) {
+        const uint32_t id = g.set == kNoElement ? TermTable::kUnknown : table_.find(Term(g.set));
+        if (id == TermTable::kUnknown) continue;
+        for (uint32_t first = 0; first < tile.count; first += kLanes) {
+            float least = std::numeric_limits<float>::infinity(), most = 0.0f;
+            for (uint32_t lane = first; lane < std::min(first + kLanes, tile.count); ++lane) {
+                const float light = luminance(direct_.of(tile.first + lane, id));
+                least = std::min(least, light), most = std::max(most, light);
+            }
+            if (most == 0.0f)
+                groups.limit(g.set, first / kLanes, kDarkSamples);
+            else if (least > kEvenLight * most)
+                groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
+        }
+    }
+}
+
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const {
     Estimate t(table_);
     t.plan = plan;
@@ -247,9 +272,10 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
     DirectGroups groups(scene.emitters, LightRoles::stored, sets_of(tile));
     uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct,
                                  hash_combine(seed, s_.receivers.texel[tile.first]));
+    limit_samples(groups, tile);
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
-    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare}, seed, rows, table_,
-                          limits_, t.direct);
+    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare}, seed, false, rows,
+                          table_, limits_, t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
         o.samples = plan.gather;
@@ -261,7 +287,7 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
         rays += gather_tile(scene, tile, o, rows, table_, limits_, t.gather);
     }
     progress_.add_rays(rays);
-    t.index();
+    t.finish(tile.count);
     return t;
 }
 
@@ -330,7 +356,7 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
         const size_t before = out.light.size();
         result_.samples[r] = static_cast<float>(plan.gather);
         result_.inside[r] = t.gather.inside(lane) * per_ray;
-        for (uint32_t term = 0; term < t.terms.size(); ++term) {
+        for (const uint32_t term : t.terms_at[lane]) {
             TermLight light{term, t.irradiance(term, lane), {}, static_cast<float>(std::sqrt(t.variance(term, lane)))};
             const auto *g = t.gathered(term, lane), *d = t.sampled(term, lane);
             for (int c = 0; c < kShCount; ++c)
@@ -430,8 +456,8 @@ BakeResult TermBaker::run() {
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     for (uint32_t b = 1; b < settings_.bounces; ++b) bounce(b);
-    radiance_ =
-        radiance_rows(settings_.term_threshold > 0.0f ? prune(source_) : source_, s_.receivers, s_.scene.texel_count());
+    radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
+                              s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     const std::vector<RayPlan> plan = plan_rays();

@@ -25,9 +25,10 @@ private:
     EmitterSet find_bright_texels();
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
-    ReceiverRows prune(const ReceiverRows& rows) const;
+    ReceiverRows prune(const ReceiverRows& rows, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
     PilotResult pilot_tile(const Tile& tile, const RayPlan& rays, uint32_t index);
+    void limit_samples(DirectGroups& groups, const Tile& tile) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
     void final_gather(const std::vector<RayPlan>& plan);
     void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);

@@ -26,6 +26,20 @@ std::vector<Term> union_of_terms(const std::vector<const TermSums*>& sums) {
     return terms;
 }
 
+TermIndex::TermIndex(const TermSums& sums, const std::vector<Term>& terms)
+    : sums_(&sums), slot_(terms.size(), TermSums::kNone), term_(sums.slots()) {
+    for (uint32_t slot = 0; slot < sums.slots(); ++slot) {
+        const auto at = std::lower_bound(terms.begin(), terms.end(), sums.term(slot)) - terms.begin();
+        term_[slot] = static_cast<uint32_t>(at);
+        slot_[static_cast<size_t>(at)] = slot;
+    }
+}
+
+void sort_unique(std::vector<uint32_t>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table) {
     std::vector<Term> met;
     size_t entries = 0;

@@ -30,6 +30,27 @@ struct ReceiverRows {
 /// The terms of several sums side by side, each once, ascending.
 std::vector<Term> union_of_terms(const std::vector<const TermSums*>& sums);
 
+/// How the slots of some sums and a list of terms, ascending, belong together.
+class TermIndex {
+public:
+    TermIndex(const TermSums& sums, const std::vector<Term>& terms);
+    /// What a term brings to a lane; null if it never arrived in these sums.
+    const TermSums::Block* block(size_t term, uint32_t lane) const {
+        return slot_[term] != TermSums::kNone ? &sums_->block(slot_[term], lane) : nullptr;
+    }
+    /// Appends the terms that bring light to a lane.
+    void collect(uint32_t lane, std::vector<uint32_t>& out) const {
+        for (const uint32_t slot : sums_->slots_at(lane)) out.push_back(term_[slot]);
+    }
+
+private:
+    const TermSums* sums_;
+    std::vector<uint32_t> slot_, term_; ///< of each term, of each slot
+};
+
+/// Ascending, each once.
+void sort_unique(std::vector<uint32_t>& values);
+
 /// Joins the rows of all tiles; terms that are new get their numbers in table.
 ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+
 #include "sampling/light_choice.h"
 
 namespace ajar {
@@ -12,16 +14,21 @@ public:
     struct Group {
         uint32_t set; ///< light set or kNoElement
         LightChoice choice;
-        uint32_t samples; ///< per receiver
+        uint32_t samples = 0;                               ///< most per receiver
+        std::array<uint32_t, kTileReceivers / kLanes> of{}; ///< per receiver, for each packet of receivers
     };
 
     /// sets: the light sets to sample, beside the emitters of none.
     DirectGroups(const EmitterSet& emitters, LightRoles roles, const std::vector<uint32_t>& sets);
 
-    /// Prepares for a tile and gives every group that can light it its samples; groups that no
-    /// visibility ray of the tile saw get unseen_samples. Returns the rays traced.
+    /// Prepares for a tile and gives every group that can light it its samples: light sets as many, up
+    /// to samples, as the variance of what their visibility rays met asks for; those that no ray saw
+    /// get unseen_samples. Returns the rays traced.
     uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples,
                    uint32_t unseen_samples, uint32_t seed);
+
+    /// Lets the receivers of a packet have fewer samples of a light set.
+    void limit(uint32_t set, uint32_t packet, uint32_t samples);
 
     const std::vector<Group>& groups() const { return groups_; }
     /// Expected number of samples that a receiver spends on an emitter, for MIS.

@@ -40,30 +40,42 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
 }
 
+LightChoice::Seen LightChoice::look(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                                    uint32_t candidate, uint32_t seed) const {
+    const uint32_t emitter = candidates_[candidate].emitter;
+    Seen seen;
+    for (uint32_t i = 0; i < kVisibilityRays; ++i) {
+        const uint32_t h = hash_combine(seed, (candidate << 8) | i);
+        const uint32_t r = tile.first + (h % tile.count);
+        const Vec3 p = receivers.origins(r)[i % receivers.positions_per_texel], n = receivers.frame[r].z;
+        const EmitterSample s = emitters_.sample(emitter, p, owen_sobol(i, h));
+        const float cosine = glm::dot(s.direction, n);
+        if (!(max_component(s.weight) > 0.0f) || cosine <= 0.0f) continue;
+        ++seen.rays;
+        if (s.casts_shadow &&
+            tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle != kMiss)
+            continue;
+        ++seen.arrived;
+        const float ratio = luminance(s.weight) * cosine / std::max(emitters_.importance(emitter, p, n), 1e-30f);
+        seen.sum += ratio;
+        seen.squares += ratio * ratio;
+    }
+    return seen;
+}
+
 uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                                        uint32_t seed) {
     visibility_.assign(fine_, 1.0f);
     uint64_t rays = 0;
     float seen_weight = 0.0f, unseen_weight = 0.0f;
     std::vector<uint32_t> unseen;
+    std::vector<Seen> all;
     for (uint32_t c = 0; c < fine_; ++c) {
-        uint32_t seen = 0, tried = 0;
-        for (uint32_t i = 0; i < kVisibilityRays; ++i) {
-            const uint32_t h = hash_combine(seed, (c << 8) | i);
-            const uint32_t r = tile.first + (h % tile.count);
-            const Vec3 p = receivers.origins(r)[i % receivers.positions_per_texel];
-            const EmitterSample s = emitters_.sample(candidates_[c].emitter, p, owen_sobol(i, h));
-            if (!(max_component(s.weight) > 0.0f) || glm::dot(s.direction, receivers.frame[r].z) <= 0.0f) continue;
-            ++tried;
-            ++rays;
-            if (!s.casts_shadow ||
-                tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle ==
-                    kMiss)
-                ++seen;
-        }
+        const Seen& s = all.emplace_back(look(tracer, receivers, tile, c, seed));
+        rays += s.rays;
         visibility_[c] =
-            std::max(kVisibilityFloor, (static_cast<float>(seen) + 0.25f) / (static_cast<float>(tried) + 0.5f));
-        if (seen != 0)
+            std::max(kVisibilityFloor, (static_cast<float>(s.arrived) + 0.25f) / (static_cast<float>(s.rays) + 0.5f));
+        if (s.arrived != 0)
             seen_weight += candidates_[c].weight * visibility_[c];
         else
             unseen.push_back(c), unseen_weight += candidates_[c].weight * visibility_[c];
@@ -73,7 +85,21 @@ uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapRecei
         seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(unseen_weight, 1e-30f)) : 1.0f;
     for (const uint32_t c : unseen) visibility_[c] *= scale;
     seen_ = seen_weight > 0.0f || fine_ < candidates_.size();
+    find_variance(all);
     return rays;
+}
+
+/// A sample brings total * ratio / visibility with chance weight * visibility / total.
+void LightChoice::find_variance(const std::vector<Seen>& seen) {
+    double total = 0.0, mean = 0.0, second = 0.0;
+    for (uint32_t c = 0; c < fine_; ++c) {
+        if (seen[c].rays == 0) continue;
+        const double n = seen[c].rays, weight = candidates_[c].weight;
+        total += weight * visibility_[c];
+        mean += weight * seen[c].sum / n;
+        second += weight * seen[c].squares / (n * visibility_[c]);
+    }
+    relative_variance_ = mean > 0.0 ? static_cast<float>(std::max(0.0, total * second / (mean * mean) - 1.0)) : 0.0f;
 }
 
 uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {

@@ -26,6 +26,8 @@ public:
     bool empty() const { return candidates_.empty(); }
     /// Some visibility ray met a light, or there was too little to choose from to ask.
     bool seen() const { return seen_; }
+    /// Rough variance of one sample over its squared mean, from the visibility rays; 0 if they saw nothing.
+    float relative_variance() const { return relative_variance_; }
     /// Emitter for u in [0,1) and the chance it had; u is rescaled to be used again.
     uint32_t pick(uint32_t local, float& u, float& chance) const;
     /// Chance of an emitter at a receiver of the tile, for MIS.
@@ -37,13 +39,22 @@ private:
         float weight; ///< of the whole tile
     };
     void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
+    /// What a candidate's visibility rays brought, each over the importance where it started.
+    struct Seen {
+        uint32_t rays = 0, arrived = 0;
+        float sum = 0.0f, squares = 0.0f;
+    };
+    Seen look(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t candidate,
+              uint32_t seed) const;
     uint64_t learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                               uint32_t seed);
+    void find_variance(const std::vector<Seen>& seen);
 
     const EmitterSet& emitters_;
     LightRoles roles_;
     std::vector<uint32_t> choices_;
     bool seen_ = true;
+    float relative_variance_ = 0.0f;
     std::vector<Candidate> candidates_; ///< strongest first; the first fine_ are weighed per receiver
     uint32_t fine_ = 0;
     std::vector<float> visibility_;   ///< [fine_]

@@ -11,12 +11,17 @@ namespace ajar {
 
 namespace {
 
+constexpr uint32_t kProbes = 2; ///< samples of each receiver of a packet that decide whether the others are worth it
+constexpr float kGoOn = 0.25f;  ///< chance of a packet to go on although they found nothing
+
 /// Eight receivers' samples that wait for their shadow rays.
 struct ShadowPacket {
     RayPacket rays;
     alignas(32) int32_t valid[kLanes];
     EmitterSample sample[kLanes];
-    PacketDirections local; ///< weight: of what is booked
+    PacketDirections local;
+    float book_scale = 1.0f; ///< of what is booked
+    bool arrived = false;    ///< some sample so far was not blocked
     float scale[kLanes];
     uint32_t emitter[kLanes];
     bool lit[kLanes];
@@ -30,34 +35,37 @@ struct DirectSampler {
     MisCounts mis;
     uint32_t seed;
     Sink sink;
-    float book_scale = 1.0f;   ///< of what is booked
     uint32_t first_sample = 0; ///< number of the first sample in the sums
+    bool mean = false;         ///< book means over the samples, not sums
+    bool thrifty = false;
+    uint64_t rays = 0;
 
-    bool prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const;
+    void shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end);
+    bool prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet, uint32_t lane) const;
     void finish(ShadowPacket& packet, uint32_t first, uint32_t sample);
     void arrive(const ShadowPacket& packet, uint32_t lane, uint32_t receiver);
     uint64_t run();
 };
 
 template <class Sink>
-bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, ShadowPacket& packet, uint32_t lane) const {
+bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet,
+                                  uint32_t lane) const {
     const uint32_t r = tile.first + local;
     const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
-    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(group.samples),
-          chance;
+    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
     const uint32_t emitter = group.choice.pick(local, u, chance);
     const Vec3 p = g.receivers.origins(r)[(sample + h) % g.receivers.positions_per_texel];
     // Positions follow the low bits of the sample number, so the points on the lamp must not.
     const EmitterSample s = g.emitters.sample(emitter, p, owen_sobol(shuffle_index(sample, h ^ 0x9e3779b9u), h));
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
-    const float own = static_cast<float>(group.samples) * s.pdf * chance;
+    const float own = static_cast<float>(samples) * s.pdf * chance;
     const float weight = s.pdf > 0.0f ? own / (own + mis.gather * hemisphere_pdf(w.z, mis.share))
                                       : near_lamp_factor(g.receivers, r, p, s);
     packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;
-    packet.local.set(lane, w, book_scale);
+    packet.local.set(lane, w, packet.book_scale);
     packet.lit[lane] = !s.casts_shadow;
     packet.rays.set(lane, p, s.direction, shadow_end(g.tracer, s));
     return is_finite(s.weight * packet.scale[lane]);
@@ -88,29 +96,48 @@ void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint
 template <class Sink>
 void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t sample) {
     for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
-        if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f))
+        if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f)) {
+            packet.arrived = true;
             arrive(packet, lane, tile.first + first + lane);
+        }
         sink.end_sample(lane, first + lane, first_sample + sample, packet.local);
     }
     sink.end_packet(first, first_sample + sample, packet.local);
 }
 
+/// Samples begin to end of the receivers of one packet.
+template <class Sink>
+void DirectSampler<Sink>::shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end) {
+    const uint32_t samples = group.of[first / kLanes];
+    for (uint32_t sample = begin; sample < end; ++sample) {
+        packet.rays.prepare(kMaskShadowOpaque);
+        for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            packet.valid[lane] =
+                first + lane < tile.count && prepare(first + lane, sample, samples, packet, lane) ? -1 : 0;
+            if (packet.valid[lane] == 0) packet.rays.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
+            rays += packet.valid[lane] != 0;
+        }
+        g.tracer.occluded(packet.valid, packet.rays);
+        finish(packet, first, sample);
+    }
+}
+
 template <class Sink>
 uint64_t DirectSampler<Sink>::run() {
     ShadowPacket packet{};
-    uint64_t rays = 0;
-    for (uint32_t sample = 0; sample < group.samples; ++sample) {
-        if (sample % 64 == 0) g.progress.check_cancel();
-        for (uint32_t first = 0; first < tile.count; first += kLanes) {
-            packet.rays.prepare(kMaskShadowOpaque);
-            for (uint32_t lane = 0; lane < kLanes; ++lane) {
-                packet.valid[lane] = first + lane < tile.count && prepare(first + lane, sample, packet, lane) ? -1 : 0;
-                if (packet.valid[lane] == 0) packet.rays.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
-                rays += packet.valid[lane] != 0;
-            }
-            g.tracer.occluded(packet.valid, packet.rays);
-            finish(packet, first, sample);
+    for (uint32_t first = 0; first < tile.count; first += kLanes) {
+        g.progress.check_cancel();
+        const uint32_t samples = group.of[first / kLanes];
+        packet.book_scale = mean ? 1.0f / static_cast<float>(samples) : 1.0f;
+        packet.arrived = false;
+        const uint32_t probes = thrifty && samples > 4 * kProbes ? kProbes : samples;
+        shoot(packet, first, 0, probes);
+        if (probes == samples) continue;
+        if (!packet.arrived) {
+            if (unit_float(hash_combine(seed, g.receivers.texel[tile.first + first])) >= kGoOn) continue;
+            packet.book_scale /= kGoOn;
         }
+        shoot(packet, first, probes, samples);
     }
     return rays;
 }
@@ -118,15 +145,14 @@ uint64_t DirectSampler<Sink>::run() {
 /// Every group of a tile, each as the mean over its own samples.
 template <class Sink>
 uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
-                    uint32_t seed, const Sink& sink) {
+                    uint32_t seed, bool thrifty, const Sink& sink) {
     uint64_t rays = 0;
     uint32_t first_sample = 0;
     for (const DirectGroups::Group& g : groups.groups()) {
         if (g.samples == 0) continue;
-        const uint32_t own_seed = g.set == kNoElement ? seed : hash_combine(seed, g.set);
-        rays +=
-            DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, 1.0f / static_cast<float>(g.samples), first_sample}
-                .run();
+        const bool is_set = g.set != kNoElement;
+        const uint32_t own_seed = is_set ? hash_combine(seed, g.set) : seed;
+        rays += DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, first_sample, true, thrifty && is_set}.run();
         first_sample += (g.samples + 1) & ~1u; // samples of two groups never make a pair
     }
     return rays;
@@ -141,11 +167,12 @@ uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& grou
 }
 
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
-                       uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits,
-                       TermSums& sums) {
+                       uint32_t seed, bool thrifty, const TermRows* rows, const TermTable& table,
+                       const TermLimits& limits, TermSums& sums) {
     if (scene.scene.has_switches())
-        return run_groups(scene, groups, tile, mis, seed, TermSink<true>(scene.scene, rows, table, limits, sums));
-    return run_groups(scene, groups, tile, mis, seed, TermSink<false>(scene.scene, rows, table, limits, sums));
+        return run_groups(scene, groups, tile, mis, seed, thrifty,
+                          TermSink<true>(scene.scene, rows, table, limits, sums));
+    return run_groups(scene, groups, tile, mis, seed, thrifty, TermSink<false>(scene.scene, rows, table, limits, sums));
 }
 
 } // namespace ajar

@@ -18,9 +18,10 @@ uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& grou
                        const MisCounts& mis, uint32_t seed, TileSums& sums);
 
 /// The same for scenes with elements and all groups: sums hold the mean over each group's samples.
-/// rows: light of bright texels, null if there are none.
+/// rows: light of bright texels, null if there are none. thrifty: receivers at which the first samples
+/// of a set found nothing go on with its others in one of four cases, which then count four times.
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
-                       uint32_t seed, const TermRows* rows, const TermTable& table, const TermLimits& limits,
-                       TermSums& sums);
+                       uint32_t seed, bool thrifty, const TermRows* rows, const TermTable& table,
+                       const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

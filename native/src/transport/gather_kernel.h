@@ -49,8 +49,11 @@ struct Gatherer {
         for (uint32_t begin = 0; begin < o.samples; begin += count) {
             g.progress.check_cancel();
             tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays);
-            for (uint32_t s = 0; s < count; ++s)
-                for (uint32_t first = 0; first < tile.count; first += kLanes) shoot(first, s, begin + s);
+            // Strata of all receivers together keep rays close, those of few receivers their many sums.
+            const uint32_t together = Sink::kTogether < count ? Sink::kTogether : count;
+            for (uint32_t part = 0; part < count; part += together)
+                for (uint32_t first = 0; first < tile.count; first += kLanes)
+                    for (uint32_t s = part; s < part + together; ++s) shoot(first, s, begin + s);
         }
     }
 

@@ -13,6 +13,7 @@ namespace ajar {
 class PlainSink {
 public:
     static constexpr bool kSwitches = false;
+    static constexpr uint32_t kTogether = 1; ///< strata of a packet's receivers that are visited in a row
     /// What is left of light on the way to the receiver.
     struct Through {
         Vec3 color{1.0f};
@@ -55,6 +56,7 @@ template <bool Switches>
 class TermSink {
 public:
     static constexpr bool kSwitches = Switches;
+    static constexpr uint32_t kTogether = 64;
     struct Through {
         Vec3 color{1.0f};
         Condition condition;

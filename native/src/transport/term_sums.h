@@ -32,6 +32,7 @@ public:
     explicit TermSums(const TermTable& table)
         : table_(table),
           slot_of_id_(table.count(), kNone),
+          slots_at_(kTileReceivers),
           total_(kTileReceivers),
           cosine_sum_(kTileReceivers, 0.0f),
           inside_(kTileReceivers, 0.0f) {}
@@ -39,6 +40,8 @@ public:
     uint32_t slots() const { return static_cast<uint32_t>(terms_.size()); }
     const Term& term(uint32_t slot) const { return terms_[slot]; }
     const Block& block(uint32_t slot, uint32_t lane) const { return blocks_[slot][lane]; }
+    /// Slots that brought light to a lane, in the order of their coming.
+    const std::vector<uint32_t>& slots_at(uint32_t lane) const { return slots_at_[lane]; }
     uint32_t slot_of(uint32_t term_id) {
         uint32_t& s = slot_of_id_[term_id];
         if (s == kNone) s = make_slot(table_[term_id]);
@@ -49,13 +52,6 @@ public:
         if (recent.slot == kNone || recent.term != term) recent = {term, look_up(term)};
         return recent.slot;
     }
-    /// Slot of a term that never arrived is kNone.
-    uint32_t find(const Term& term) const {
-        for (uint32_t s = 0; s < slots(); ++s)
-            if (terms_[s] == term) return s;
-        return kNone;
-    }
-
     /// Collects what one sample brings; end_sample() books it.
     void arrive(uint32_t slot, const Vec3& light) {
         if (mark_[slot] < pending_.size() && pending_[mark_[slot]].slot == slot) {
@@ -109,6 +105,7 @@ private:
     std::unordered_map<Term, uint32_t, TermHash> slot_of_new_;
     std::vector<Term> terms_;
     std::vector<std::vector<Block>> blocks_;
+    std::vector<std::vector<uint32_t>> slots_at_;
     std::vector<Block> total_;
     std::vector<float> cosine_sum_, inside_;
     std::vector<uint32_t> mark_;
@@ -125,6 +122,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         const Vec3 facing = p.light * scale;
         const float l = luminance(facing), along = l * w.z;
         if (!std::isfinite(l)) continue;
+        if (b.last_sample < 0.0f) slots_at_[lane].push_back(p.slot);
         for (int i = 0; i < kShCount; ++i) b.sh[i] += y[i] * l;
         for (int c = 0; c < 3; ++c) b.irradiance[c] += facing[c] * w.z;
         b.book(sample, along);
