@@ -123,6 +123,16 @@ ENGINE_FIELDS = (
         "share of its mean indirect light; 0 keeps all",
         "Keep threshold",
     ),
+    Field(
+        "door_rays",
+        "float",
+        0.25,
+        0.0,
+        1.0,
+        "",
+        "Final rays that aim at each door in sight, as a share of those over the hemisphere",
+        "Door rays",
+    ),
 )
 
 # Fields of ajar_layout_settings, in the order of the struct.

@@ -60,7 +60,8 @@ def check_settings(values, fields):
 def engine_settings(preset="PREVIEW", **overrides):
     """Settings of a bake (names of ajar_settings) from a preset; overrides that are None are left out.
 
-    samples given without a noise target means exactly that many rays: the target becomes 0.
+    samples given without a noise target means exactly that many rays: the target becomes 0, and a quarter as
+    many emitter samples are taken.
     """
     if preset not in PRESETS:
         raise SettingsError(f"unknown preset {preset!r}")
@@ -70,7 +71,11 @@ def engine_settings(preset="PREVIEW", **overrides):
     for name in ("samples", "bounce_samples"):
         if name in given:
             given[name] = _power_of_two(given[name])
-    return check_settings({**PRESETS[preset], **given}, ENGINE_FIELDS)
+    values = {**PRESETS[preset], **given}
+    # Without a target to stop them the cap of emitter samples would be their count.
+    if values["noise_target"] == 0.0 and "direct_samples" not in given:
+        values["direct_samples"] = max(16, values["samples"] // 4)
+    return check_settings(values, ENGINE_FIELDS)
 
 
 def layout_settings(**overrides):

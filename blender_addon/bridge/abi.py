@@ -173,6 +173,7 @@ class Settings(c.Structure):
         ("keep_bounces", u32),
         ("combinations", u32),
         ("term_threshold", f32),
+        ("door_rays", f32),
     ]
 
 

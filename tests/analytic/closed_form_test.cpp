@@ -116,31 +116,62 @@ TEST(ClosedForm, AreaLampEqualsItsRadiance) {
         }
 }
 
-TEST(ClosedForm, HoleInWallBeforeSky) {
-    // A closed black box whose lid has a rectangular hole: only the hole shows the sky.
+/// A square receiver in a closed black box whose lid has a rectangular hole: only the hole shows the sky.
+struct HoleInWall {
+    static constexpr uint32_t kSize = 8;
+    static constexpr float kEdge = 0.5f, kW = 20.0f, kH = 1.0f;
+    float x0, x1, y0, y1; ///< the hole
     kit::Scene scene;
-    constexpr uint32_t kSize = 8;
-    constexpr float kW = 20.0f, kH = 1.0f, kX0 = -0.4f, kX1 = 0.6f, kY0 = -0.3f, kY1 = 0.5f;
-    scene.instance(scene.mesh(kit::plane(0.5f, 0.0f)), scene.diffuse({0.5f, 0.5f, 0.5f}), scene.page(kSize, kSize));
-    kit::MeshData shell;
-    shell.quad({-kW, -kW, kH}, {kX0, -kW, kH}, {kX0, kW, kH}, {-kW, kW, kH}, {0, 0}, {1, 1});
-    shell.quad({kX1, -kW, kH}, {kW, -kW, kH}, {kW, kW, kH}, {kX1, kW, kH}, {0, 0}, {1, 1});
-    shell.quad({kX0, -kW, kH}, {kX1, -kW, kH}, {kX1, kY0, kH}, {kX0, kY0, kH}, {0, 0}, {1, 1});
-    shell.quad({kX0, kY1, kH}, {kX1, kY1, kH}, {kX1, kW, kH}, {kX0, kW, kH}, {0, 0}, {1, 1});
-    shell.quad({-kW, -kW, -1}, {kW, -kW, -1}, {kW, -kW, kH}, {-kW, -kW, kH}, {0, 0}, {1, 1});
-    shell.quad({-kW, kW, -1}, {kW, kW, -1}, {kW, kW, kH}, {-kW, kW, kH}, {0, 0}, {1, 1});
-    shell.quad({-kW, -kW, -1}, {-kW, kW, -1}, {-kW, kW, kH}, {-kW, -kW, kH}, {0, 0}, {1, 1});
-    shell.quad({kW, -kW, -1}, {kW, kW, -1}, {kW, kW, kH}, {kW, -kW, kH}, {0, 0}, {1, 1});
-    scene.instance(scene.mesh(shell), scene.diffuse({0, 0, 0}), AJAR_NONE);
-    scene.sky({1, 1, 1});
-    scene.commit();
-    const kit::Layer e = kit::Bake(scene, kit::settings(1, 1 << 17)).layer(AJAR_LAYER_IRRADIANCE);
-    for (uint32_t y = 0; y < kSize; ++y)
-        for (uint32_t x = 0; x < kSize; ++x) {
-            const double expected =
-                lambert_texel({{kX0, kY0, kH}, {kX1, kY0, kH}, {kX1, kY1, kH}, {kX0, kY1, kH}}, x, y, kSize, 0.5f);
-            ASSERT_NEAR(e.at(x, y) / expected, 1.0, 0.005) << x << ' ' << y;
-        }
+
+    HoleInWall(float left, float right, float low, float high) : x0(left), x1(right), y0(low), y1(high) {
+        scene.instance(scene.mesh(kit::plane(kEdge, 0.0f)), scene.diffuse({0.5f, 0.5f, 0.5f}),
+                       scene.page(kSize, kSize));
+        kit::MeshData shell;
+        shell.quad({-kW, -kW, kH}, {x0, -kW, kH}, {x0, kW, kH}, {-kW, kW, kH}, {0, 0}, {1, 1});
+        shell.quad({x1, -kW, kH}, {kW, -kW, kH}, {kW, kW, kH}, {x1, kW, kH}, {0, 0}, {1, 1});
+        shell.quad({x0, -kW, kH}, {x1, -kW, kH}, {x1, y0, kH}, {x0, y0, kH}, {0, 0}, {1, 1});
+        shell.quad({x0, y1, kH}, {x1, y1, kH}, {x1, kW, kH}, {x0, kW, kH}, {0, 0}, {1, 1});
+        shell.quad({-kW, -kW, -1}, {kW, -kW, -1}, {kW, -kW, kH}, {-kW, -kW, kH}, {0, 0}, {1, 1});
+        shell.quad({-kW, kW, -1}, {kW, kW, -1}, {kW, kW, kH}, {-kW, kW, kH}, {0, 0}, {1, 1});
+        shell.quad({-kW, -kW, -1}, {-kW, kW, -1}, {-kW, kW, kH}, {-kW, -kW, kH}, {0, 0}, {1, 1});
+        shell.quad({kW, -kW, -1}, {kW, kW, -1}, {kW, kW, kH}, {kW, -kW, kH}, {0, 0}, {1, 1});
+        shell.quad({-kW, -kW, -1}, {-kW, kW, -1}, {kW, kW, -1}, {kW, -kW, -1}, {0, 0}, {1, 1});
+        scene.instance(scene.mesh(shell), scene.diffuse({0, 0, 0}), AJAR_NONE);
+        scene.sky({1, 1, 1});
+    }
+    void expect(const kit::Layer& e) const {
+        for (uint32_t y = 0; y < kSize; ++y)
+            for (uint32_t x = 0; x < kSize; ++x) {
+                const double expected =
+                    lambert_texel({{x0, y0, kH}, {x1, y0, kH}, {x1, y1, kH}, {x0, y1, kH}}, x, y, kSize, kEdge);
+                ASSERT_NEAR(e.at(x, y) / expected, 1.0, 0.005) << x << ' ' << y;
+            }
+    }
+};
+
+TEST(ClosedForm, HoleInWallBeforeSky) {
+    HoleInWall hole(-0.4f, 0.6f, -0.3f, 0.5f);
+    hole.scene.commit();
+    hole.expect(kit::Bake(hole.scene, kit::settings(1, 1 << 17)).layer(AJAR_LAYER_IRRADIANCE));
+}
+
+TEST(ClosedForm, DoorBeforeSky) {
+    // A black leaf lies over the hole: closed it is dark, open it is the hole. Most rays aim at the leaf's box.
+    using Hole = HoleInWall;
+    Hole hole(-0.1f, 0.15f, -0.08f, 0.12f);
+    hole.scene.current_switch = hole.scene.element(AJAR_ELEMENT_DOOR, "door", false);
+    const kit::MeshData leaf = kit::box({hole.x0 - 0.1f, hole.y0 - 0.1f, Hole::kH + 0.01f},
+                                        {hole.x1 + 0.1f, hole.y1 + 0.1f, Hole::kH + 0.05f}, false);
+    hole.scene.instance(hole.scene.mesh(leaf), hole.scene.diffuse({0, 0, 0}), AJAR_NONE);
+    hole.scene.current_switch = AJAR_NONE;
+    hole.scene.commit();
+    ajar_settings s = kit::settings(1, 1 << 14);
+    s.door_rays = 1.0f;
+    const kit::Bake bake(hole.scene, s);
+    ASSERT_EQ(bake.terms().size(), 2u);
+    const kit::Layer closed = bake.term(0, Hole::kSize, Hole::kSize);
+    for (const float e : closed.data) ASSERT_EQ(e, 0.0f);
+    hole.expect(bake.term(1, Hole::kSize, Hole::kSize));
 }
 
 TEST(ClosedForm, LambertianSphereIndirect) {

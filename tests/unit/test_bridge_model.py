@@ -37,7 +37,10 @@ def test_presets(preset, noise):
 def test_samples_alone_turn_the_target_off():
     settings = model.engine_settings("PREVIEW", samples=100)
     assert settings["samples"] == 128 and settings["noise_target"] == 0.0
-    assert model.engine_settings("PREVIEW", samples=100, noise_target=0.1)["noise_target"] == 0.1
+    assert settings["direct_samples"] == 32
+    with_target = model.engine_settings("PREVIEW", samples=100, noise_target=0.1)
+    assert with_target["noise_target"] == 0.1 and with_target["direct_samples"] == 1024
+    assert model.engine_settings("PREVIEW", samples=100, direct_samples=7)["direct_samples"] == 7
 
 
 @pytest.mark.parametrize(

@@ -259,7 +259,7 @@ typedef struct ajar_settings {
     float time_limit;             /* s, whole bake; 0 = none */
     uint32_t samples;             /* final gather rays per texel when noise_target is 0, else the cap; power of two */
     uint32_t bounce_samples;      /* rays per texel and intermediate bounce; power of two */
-    uint32_t direct_samples;      /* shadow rays per texel in the final pass */
+    uint32_t direct_samples;      /* shadow rays per texel in the final pass when noise_target is 0, else the cap */
     uint32_t positions_per_texel; /* 1..16 */
     uint32_t seed;
     uint32_t threads;      /* 0 = all */
@@ -269,6 +269,8 @@ typedef struct ajar_settings {
     uint32_t combinations; /* AJAR_COMBINATIONS_* */
     float term_threshold;  /* a texel keeps a term if lit by it directly or brighter than this share
                               of the term's mean indirect light there; 0 keeps all */
+    float door_rays;       /* final rays that aim at each door in sight, as a share of those over the
+                              hemisphere; 0..1, 0 = none */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

@@ -84,6 +84,7 @@ AJAR_API void ajar_settings_init(ajar_settings* s) {
     s->stitch_seams = 1;
     s->combinations = AJAR_COMBINATIONS_AUTO;
     s->term_threshold = 0.01f;
+    s->door_rays = 0.25f;
 }
 
 AJAR_API void ajar_term_info_init(ajar_term_info* t) { init_struct(t); }

@@ -21,6 +21,7 @@ json settings_json(const ajar_settings& s) {
             {"positions_per_texel", s.positions_per_texel},
             {"combinations", s.combinations},
             {"term_threshold", s.term_threshold},
+            {"door_rays", s.door_rays},
             {"seed", s.seed},
             {"threads", s.threads},
             {"stitch_seams", s.stitch_seams != 0},

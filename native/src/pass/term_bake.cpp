@@ -8,6 +8,7 @@ namespace {
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kDarkSamples = 2;   ///< per receiver and set, where the source pass found the set dark
 constexpr float kEvenLight = 0.8f;     ///< least over most light of neighbours that lie in no shadow's edge
+constexpr uint32_t kMostAims = 4;      ///< doors that a tile aims rays at
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
 constexpr float kPruneShare = 4.0f; ///< of a term's threshold: light that is dimmer is reflected only by chance
 constexpr float kPlanShare = 0.1f;  ///< terms below this share of a tile's light do not drive its ray counts
@@ -175,7 +176,10 @@ void TermBaker::bounce(uint32_t index) {
         o.samples = std::max(settings_.bounce_samples / 4, 4u);
         o.unmapped_direct = index == 1;
         o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
-        progress_.add_rays(gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
+        TileAims aims(s_.receivers, tile);
+        const uint64_t rays = aim_at_doors(aims, o.samples, hash_combine(o.seed, s_.receivers.texel[tile.first]));
+        o.aims = aims.empty() ? nullptr : &aims;
+        progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
         tiles[i] = tile_rows(tile, sums, nullptr);
     });
     take(tiles);
@@ -265,6 +269,35 @@ void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
     }
 }
 
+/// Luminance that comes back along a ray, each term over what a texel keeps of it, and emission and sky over
+/// what it keeps of the base. Surfaces without stored light may be bright.
+float TermBaker::worth_at(const Ray& ray, const Hit& hit) const {
+    const auto worth = [&](uint32_t term, float light) { return light / std::max(threshold_[term], 1e-30f); };
+    if (hit.triangle == kMiss) return worth(0, luminance(s_.scene.sky.radiance(ray.direction)));
+    const uint8_t flags = s_.surfaces.flags(hit.triangle);
+    if ((flags & SurfaceTable::kUnmapped) != 0) return std::numeric_limits<float>::infinity();
+    float sum = 0.0f;
+    if ((flags & SurfaceTable::kEmits) != 0) sum += worth(0, luminance(s_.scene.emission(hit.triangle, hit.u, hit.v)));
+    const uint32_t texel = s_.surfaces.texel(hit.triangle, hit.u, hit.v);
+    if (!hit.back)
+        for (const TermColor* e = radiance_.begin(texel); e != radiance_.end(texel); ++e)
+            sum += worth(e->term, std::abs(luminance(e->color)));
+    return sum;
+}
+
+/// Rays into the doors through which light of some account comes to the tile.
+uint64_t TermBaker::aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const {
+    const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
+    const uint32_t even = (share + 1) & ~1u;
+    uint64_t rays = 0;
+    for (const AimBox& door : doors_) {
+        if (aims.count() == kMostAims) break;
+        rays += aims.add(
+            s_.tracer, door, [&](const Ray& r, const Hit& h) { return worth_at(r, h); }, even, seed);
+    }
+    return rays;
+}
+
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const {
     Estimate t(table_);
     t.plan = plan;
@@ -274,7 +307,10 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
                                  hash_combine(seed, s_.receivers.texel[tile.first]));
     limit_samples(groups, tile);
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
-    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare}, seed, false, rows,
+    TileAims aims(s_.receivers, tile);
+    if (plan.gather != 0) rays += aim_at_doors(aims, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
+    const TileAims* aimed = aims.empty() ? nullptr : &aims;
+    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
                           table_, limits_, t.direct);
     if (plan.gather != 0) {
         GatherOptions o;
@@ -283,6 +319,7 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
         o.emission = true;
         o.unmapped_direct = settings_.bounces > 0;
         o.direct = &groups;
+        o.aims = aimed;
         o.seed = seed;
         rays += gather_tile(scene, tile, o, rows, table_, limits_, t.gather);
     }
@@ -452,6 +489,7 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
 }
 
 BakeResult TermBaker::run() {
+    if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
     progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);

@@ -29,6 +29,8 @@ private:
     std::vector<RayPlan> plan_rays();
     PilotResult pilot_tile(const Tile& tile, const RayPlan& rays, uint32_t index);
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
+    float worth_at(const Ray& ray, const Hit& hit) const;
+    uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
     void final_gather(const std::vector<RayPlan>& plan);
     void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
@@ -52,6 +54,7 @@ private:
     TermRows radiance_;                      ///< what the next gather sees
     std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
+    std::vector<AimBox> doors_;
 };
 
 } // namespace ajar

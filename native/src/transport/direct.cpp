@@ -54,14 +54,16 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
     float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
     const uint32_t emitter = group.choice.pick(local, u, chance);
-    const Vec3 p = g.receivers.origins(r)[(sample + h) % g.receivers.positions_per_texel];
+    const uint32_t position = (sample + h) % g.receivers.positions_per_texel;
+    const Vec3 p = g.receivers.origins(r)[position];
     // Positions follow the low bits of the sample number, so the points on the lamp must not.
     const EmitterSample s = g.emitters.sample(emitter, p, owen_sobol(shuffle_index(sample, h ^ 0x9e3779b9u), h));
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
     const float own = static_cast<float>(samples) * s.pdf * chance;
-    const float weight = s.pdf > 0.0f ? own / (own + mis.gather * hemisphere_pdf(w.z, mis.share))
-                                      : near_lamp_factor(g.receivers, r, p, s);
+    float rays = mis.gather * hemisphere_pdf(w.z, mis.share); // per steradian
+    if (mis.aims != nullptr) rays += mis.aims->density(local, position, s.direction);
+    const float weight = s.pdf > 0.0f ? own / (own + rays) : near_lamp_factor(g.receivers, r, p, s);
     packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;

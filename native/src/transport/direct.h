@@ -8,8 +8,9 @@ namespace ajar {
 /// How gather rays and emitter samples share what both can find: balance heuristic with the
 /// number of samples of each (Veach 1995, multi-sample model).
 struct MisCounts {
-    float gather = 0.0f; ///< rays per receiver with density hemisphere_pdf
-    float share = 1.0f;  ///< cosine share of that density
+    float gather = 0.0f;            ///< rays per receiver with density hemisphere_pdf
+    float share = 1.0f;             ///< cosine share of that density
+    const TileAims* aims = nullptr; ///< further rays
 };
 
 /// Next-event estimation of a tile with one group of emitters: group.samples emitter samples per

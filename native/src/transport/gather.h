@@ -4,6 +4,7 @@
 #include "sampling/direct_groups.h"
 #include "transport/surface_table.h"
 #include "transport/term_sums.h"
+#include "transport/tile_aims.h"
 #include "transport/tile_sums.h"
 
 namespace ajar {
@@ -25,6 +26,7 @@ struct GatherOptions {
     bool emission = false;                ///< count what emissive surfaces and the sky send directly
     bool unmapped_direct = false;         ///< surfaces without lightmap reflect their direct light too
     const DirectGroups* direct = nullptr; ///< emitter samples that share the emission by MIS
+    const TileAims* aims = nullptr;       ///< boxes that further rays are aimed at, sharing by MIS
     uint32_t first_sample = 0;            ///< of the receiver's sequence, a multiple of samples
     uint32_t seed = 0;
 };

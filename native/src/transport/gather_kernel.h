@@ -22,7 +22,7 @@ struct Gatherer {
     const GatherOptions& o;
     const Tile& tile;
     Sink sink;
-    float mis_gather;
+    float mis_gather; ///< rays over the hemisphere, per receiver
     uint64_t rays = 0;
     TileRays tile_rays;
     uint8_t special; ///< surfaces with such a flag take the long way
@@ -32,6 +32,7 @@ struct Gatherer {
         uint32_t local;
         float cosine;
         uint32_t seed;
+        float weight; ///< inverse density of the ray, as if the hemisphere's rays were all, sr
     };
 
     Gatherer(const GatherScene& scene, const GatherOptions& options, const Tile& t, const Sink& s)
@@ -55,6 +56,10 @@ struct Gatherer {
                 for (uint32_t first = 0; first < tile.count; first += kLanes)
                     for (uint32_t s = part; s < part + together; ++s) shoot(first, s, begin + s);
         }
+        uint32_t sample = o.samples;
+        for (uint32_t aim = 0; o.aims != nullptr && aim < o.aims->count(); ++aim)
+            for (uint32_t s = 0; s < o.aims->rays(aim); ++s, ++sample)
+                for (uint32_t first = 0; first < tile.count; first += kLanes) shoot_aimed(first, aim, s, sample);
     }
 
     void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
@@ -62,14 +67,58 @@ struct Gatherer {
         RayPacket packet;
         PacketDirections local;
         alignas(32) int32_t valid[kLanes];
-        packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
         for (uint32_t lane = 0; lane < kLanes; ++lane) valid[lane] = lane < count ? -1 : 0;
         tile_rays.aim(first, stratum, packet, local);
+        if (o.aims != nullptr)
+            for (uint32_t lane = 0; lane < count; ++lane) {
+                const uint32_t position = tile_rays.position(first + lane, stratum);
+                const float aimed = o.aims->density(first + lane, position, packet.direction(lane));
+                local.weight[lane] = mis_gather / (mis_gather / local.weight[lane] + aimed);
+            }
+        trace(first, sample, packet, local, valid);
+    }
+
+    /// One ray from each receiver of a packet into a box.
+    void shoot_aimed(uint32_t first, uint32_t aim, uint32_t number, uint32_t sample) {
+        RayPacket packet;
+        PacketDirections local;
+        alignas(32) int32_t valid[kLanes];
+        for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            valid[lane] =
+                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, packet, local) ? -1 : 0;
+            if (valid[lane] != 0) continue;
+            packet.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
+            local.set(lane, Vec3(0, 0, 1), 0.0f);
+        }
+        trace(first, sample, packet, local, valid);
+    }
+
+    bool aim_lane(uint32_t i, uint32_t lane, uint32_t aim, uint32_t number, RayPacket& packet,
+                  PacketDirections& local) const {
+        const uint32_t r = tile.first + i, h = hash_combine(hash_combine(o.seed, g.receivers.texel[r]), aim);
+        const uint32_t position = (number + h) % g.receivers.positions_per_texel;
+        // Positions follow the low bits of the number, so the points in the box must not.
+        const Vec2 u = owen_sobol(shuffle_index(number, h ^ 0x9e3779b9u), h);
+        Vec3 direction;
+        if (!o.aims->sample(aim, i, position, u, direction)) return false;
+        const Vec3 w = g.receivers.frame[r].to_local(direction);
+        if (!(w.z > 0.0f)) return false;
+        const float density = mis_gather * hemisphere_pdf(w.z, o.share) + o.aims->density(i, position, direction);
+        local.set(lane, w, mis_gather / density);
+        packet.set(lane, g.receivers.origins(r)[position], direction, std::numeric_limits<float>::infinity());
+        return true;
+    }
+
+    void trace(uint32_t first, uint32_t sample, RayPacket& packet, const PacketDirections& local,
+               const int32_t* valid) {
+        const uint32_t count = std::min(kLanes, tile.count - first);
+        packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
         g.tracer.intersect(valid, packet);
-        rays += count;
         fetch(packet, count);
         for (uint32_t lane = 0; lane < count; ++lane) {
-            shade(lane, first + lane, packet, sample);
+            if (valid[lane] == 0) continue;
+            ++rays;
+            shade(lane, first + lane, packet, sample, local.weight[lane]);
             sink.end_sample(lane, first + lane, sample, local);
         }
         sink.add_cosines(first, count, local);
@@ -86,7 +135,7 @@ struct Gatherer {
     }
 
     /// Most rays meet an ordinary lightmapped surface; all else takes the long way.
-    void shade(uint32_t lane, uint32_t local, const RayPacket& packet, uint32_t sample) {
+    void shade(uint32_t lane, uint32_t local, const RayPacket& packet, uint32_t sample, float weight) {
         const uint32_t triangle = packet.triangle[lane], receiver = tile.first + local;
         const Vec3 w = packet.direction(lane);
         const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
@@ -94,7 +143,7 @@ struct Gatherer {
         const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
         const Through through = sink.start(g.scene, g.receivers.triangle[receiver]);
         const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z),
-                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample)};
+                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample), weight};
         if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special))
             return first_hit(ray, hit, through, from);
         walk(ray, hit, through, from, kMaxLayers);
@@ -189,8 +238,7 @@ struct Gatherer {
 
     float mis_weight(uint32_t emitter, float density, const Origin& from) const {
         if (o.direct == nullptr) return 0.0f; // emitter samples were all: none asked here
-        const float own = mis_gather * hemisphere_pdf(from.cosine, o.share);
-        return own / (own + density * o.direct->expected(from.local, emitter));
+        return mis_gather / (mis_gather + from.weight * density * o.direct->expected(from.local, emitter));
     }
 
     void sky(const Vec3& w, const Through& through, const Origin& from) {

@@ -78,7 +78,7 @@ struct Finder {
 
     /// A ray's share in what a side sees. Tinted surfaces say nothing, from either side.
     void look(const Ray& ray, View& view, float weight, uint32_t seed) const {
-        const Hit hit = tracer.intersect(ray, kMaskGatherAll);
+        const Hit hit = tracer.intersect(ray, kMaskGather); // doors are open, toggles absent
         if (hit.triangle == kMiss) {
             view.misses += weight;
             if (ray.direction.z < 0.0f) view.below += weight;

@@ -29,6 +29,11 @@ public:
             turn_[i] = shuffle_index(block, hash32(receivers_.texel[receiver(i)] ^ seed_)) & 0xffffu;
     }
 
+    /// Which of its positions a receiver's ray of a stratum starts at.
+    uint32_t position(uint32_t local, uint32_t stratum) const {
+        return (stratum + turn_[local]) % receivers_.positions_per_texel;
+    }
+
     /// Rays of one stratum from receivers first to first + kLanes; those past the tile repeat its last.
     void aim(uint32_t first, uint32_t stratum, RayPacket& packet, PacketDirections& local) const {
         const float *x = batch_.x(first, stratum), *y = batch_.y(first, stratum);
@@ -37,9 +42,8 @@ public:
             local.set(lane, w, 1.0f / hemisphere_pdf(std::max(w.z, 1e-6f), share_));
         }
         turn_to_world(first, local, packet);
-        const uint32_t k_count = receivers_.positions_per_texel;
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            const Vec3& p = receivers_.origins(receiver(first + lane))[(stratum + turn_[first + lane]) % k_count];
+            const Vec3& p = receivers_.origins(receiver(first + lane))[position(first + lane, stratum)];
             packet.ox[lane] = p.x, packet.oy[lane] = p.y, packet.oz[lane] = p.z;
             packet.tfar[lane] = std::numeric_limits<float>::infinity();
         }
