@@ -98,6 +98,8 @@ def main():
             reference,
             '--out',
             folder,
+            '--report',
+            os.path.join(folder, "ajar", "report.json"),
             *more,
         ],
         check=False,
