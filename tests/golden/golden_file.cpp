@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "golden_file.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <stdexcept>
 
@@ -13,9 +15,18 @@ constexpr const char* kHeader = "ajar-golden-1";
 std::ostream& operator<<(std::ostream& out, const Color& c) { return out << ' ' << c[0] << ' ' << c[1] << ' ' << c[2]; }
 std::istream& operator>>(std::istream& in, Color& c) { return in >> c[0] >> c[1] >> c[2]; }
 
+void average_noise(std::vector<RegionLight>& regions, const std::vector<Measurement>& groups) {
+    std::vector<double> logs(regions.size(), 0.0);
+    for (const Measurement& group : groups) {
+        const std::vector<RegionLight> noisy = group.regions();
+        for (size_t i = 0; i < noisy.size(); ++i) logs[i] += std::log(std::max(noisy[i].noise, kLeastNoise));
+    }
+    for (size_t i = 0; i < logs.size(); ++i) regions[i].noise = std::exp(logs[i] / static_cast<double>(groups.size()));
+}
+
 } // namespace
 
-GoldenData join(const Measurement& fine, const Measurement& tested) {
+GoldenData join(const Measurement& fine, const Measurement& tested, const std::vector<Measurement>& groups) {
     GoldenData data{fine.count(), tested.count(), 0.0, 0.0, fine.regions()};
     const std::vector<RegionLight> noisy = tested.regions();
     if (noisy.size() != data.regions.size()) throw std::runtime_error("terms depend on the settings");
@@ -24,8 +35,8 @@ GoldenData join(const Measurement& fine, const Measurement& tested) {
         if (noisy[i].region != r.region || noisy[i].texels != r.texels)
             throw std::runtime_error("covered texels depend on the settings: " + r.region.text());
         r.deviation = noisy[i].deviation;
-        r.noise = noisy[i].noise;
     }
+    average_noise(data.regions, groups);
     kit::Sample chi;
     for (const auto& light : tested.bakes()) chi.add(chi_square(data.regions, light, 1.0));
     data.chi_mean = chi.mean();

@@ -33,10 +33,11 @@ Options parse(int count, char** arguments) {
     return o;
 }
 
-/// Seeds of golden bakes are even, those of tests odd: no bake is held against itself.
-void bake(golden::Measurement& measurement, const ajar_settings& settings, uint32_t count, uint32_t first) {
+/// Bakes count times. Seeds of golden bakes are even, those of tests odd: no bake is held against itself.
+template <class Add>
+void bake(const golden::GoldenScene& scene, const ajar_settings& settings, uint32_t count, uint32_t first, Add add) {
     const auto begin = std::chrono::steady_clock::now();
-    for (uint32_t i = 0; i < count; ++i) measurement.add(settings, 2 * (first + i));
+    for (uint32_t i = 0; i < count; ++i) add(golden::bake(scene, settings, 2 * (first + i)), i);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     std::printf("  %u bakes, %.2f s each\n", count, seconds.count() / count);
     std::fflush(stdout);
@@ -46,17 +47,24 @@ void make(const std::string& name, const Options& o) {
     std::printf("%s\n", name.c_str());
     const auto scene = golden::make_scene(name);
     golden::Measurement fine(*scene), tested(*scene);
-    bake(tested, scene->tested, o.tested, 1);
-    bake(fine, scene->fine, o.fine, 100000);
-    golden::write_golden(golden::join(fine, tested), o.folder + "/" + name + ".txt");
+    std::vector<golden::Measurement> groups(o.tested / golden::kGroup, golden::Measurement(*scene));
+    bake(*scene, scene->tested, o.tested, 1, [&](const kit::Bake& b, uint32_t i) {
+        tested.add(b);
+        groups.at(i / golden::kGroup).add(b);
+    });
+    bake(*scene, scene->fine, o.fine, 100000, [&](const kit::Bake& b, uint32_t) { fine.add(b); });
+    golden::write_golden(golden::join(fine, tested, groups), o.folder + "/" + name + ".txt");
 }
 
 } // namespace
 
 int main(int count, char** arguments) {
     const Options o = parse(count, arguments);
-    if (o.folder.empty() || o.fine < 2 || o.tested < 2) {
-        std::fprintf(stderr, "usage: golden_make FOLDER [--fine N] [--tested N] [SCENE...]\n");
+    if (o.folder.empty() || o.fine < 2 || o.tested == 0 || o.tested % golden::kGroup != 0) {
+        std::fprintf(stderr,
+                     "usage: golden_make FOLDER [--fine N] [--tested N] [SCENE...]\n"
+                     "--tested: a multiple of %u\n",
+                     golden::kGroup);
         return 1;
     }
     try {

@@ -9,7 +9,8 @@ namespace golden {
 
 namespace {
 
-constexpr double kRounding = 2e-5; ///< relative; region means of float texels
+constexpr double kRounding = 2e-5;   ///< relative; region means of float texels
+constexpr double kFaintShare = 3e-4; ///< of the base's mean light
 
 std::string product_name(const GoldenScene& scene, const std::vector<uint32_t>& product) {
     std::string name;
@@ -70,9 +71,12 @@ void Measurement::add_page(const kit::Layer& layer, const kit::Layer& validity, 
         }
 }
 
-void Measurement::add(ajar_settings settings, uint32_t seed) {
+kit::Bake bake(const GoldenScene& scene, ajar_settings settings, uint32_t seed) {
     settings.seed = seed;
-    const kit::Bake bake(scene_.scene, settings);
+    return kit::Bake(scene.scene, settings);
+}
+
+void Measurement::add(const kit::Bake& bake) {
     const auto terms = terms_by_product(bake);
     std::vector<Place> places;
     std::vector<Color> light;
@@ -111,16 +115,27 @@ std::vector<RegionLight> Measurement::regions() const {
     return out;
 }
 
-double expected_deviation(const RegionLight& g, int c, double averaged) {
-    const double bakes = g.deviation[c] / std::sqrt(averaged), rounding = kRounding * std::abs(g.mean[c]) + 1e-9;
+double faint_light(const std::vector<RegionLight>& golden) {
+    double sum = 0.0, texels = 0.0;
+    for (const RegionLight& g : golden) {
+        if (!g.region.whole || g.region.term != "base") continue;
+        sum += (g.mean[0] + g.mean[1] + g.mean[2]) / 3.0 * g.texels;
+        texels += g.texels;
+    }
+    return kFaintShare * sum / texels;
+}
+
+double expected_deviation(const RegionLight& g, int c, double averaged, double faint) {
+    const double bakes = g.deviation[c] / std::sqrt(averaged), rounding = kRounding * std::abs(g.mean[c]) + faint;
     return std::sqrt(bakes * bakes + g.error[c] * g.error[c] + rounding * rounding);
 }
 
 double chi_square(const std::vector<RegionLight>& golden, const std::vector<Color>& light, double averaged) {
+    const double faint = faint_light(golden);
     double sum = 0.0;
     for (size_t i = 0; i < golden.size(); ++i)
         for (int c = 0; c < 3 && !golden[i].region.whole; ++c) {
-            const double z = (light[i][c] - golden[i].mean[c]) / expected_deviation(golden[i], c, averaged);
+            const double z = (light[i][c] - golden[i].mean[c]) / expected_deviation(golden[i], c, averaged, faint);
             sum += z * z;
         }
     return sum;

@@ -33,14 +33,17 @@ struct RegionLight {
     double noise = 0.0;    ///< variance of one texel's luminance, mean over the texels
 };
 
+/// Bakes a scene with these settings and this seed.
+kit::Bake bake(const GoldenScene& scene, ajar_settings settings, uint32_t seed);
+
 /// Sums bakes of one scene that differ by their seed only.
 class Measurement {
 public:
     explicit Measurement(const GoldenScene& scene) : scene_(scene) {}
 
-    /// Bakes with this seed and adds the result; a product that the bake has no term for is dark.
-    /// Throws std::runtime_error if the bake fails or covers other texels than those before.
-    void add(ajar_settings settings, uint32_t seed);
+    /// Adds a bake; a product that it has no term for is dark. Throws std::runtime_error if it
+    /// covers other texels than those before.
+    void add(const kit::Bake& bake);
     uint32_t count() const { return static_cast<uint32_t>(bakes_.size()); }
     std::vector<RegionLight> regions() const;
     /// Region means of each bake, in the order of regions().
@@ -63,12 +66,16 @@ private:
     std::vector<std::vector<Color>> bakes_;
 };
 
+/// Light too faint to matter, W/m^2: a share of what the base has on average. Less than that may come
+/// through the joints of touching boxes once in thousands of bakes, which no variance tells of.
+double faint_light(const std::vector<RegionLight>& golden);
+
+/// Standard deviation that a mean of `averaged` bakes is expected to have from the golden mean, with
+/// the rounding of float images and faint light as the least.
+double expected_deviation(const RegionLight& golden, int channel, double averaged, double faint);
+
 /// Sum over blocks and colours of squared deviations from the golden mean, each in units of its
 /// variance. `averaged`: bakes behind each mean.
 double chi_square(const std::vector<RegionLight>& golden, const std::vector<Color>& light, double averaged);
-
-/// Standard deviation that a mean of `averaged` bakes is expected to have from the golden mean, with
-/// the rounding of float images as the least.
-double expected_deviation(const RegionLight& golden, int channel, double averaged);
 
 } // namespace golden

@@ -94,8 +94,8 @@ void set_sky(kit::Scene& scene) {
     kit::check(ajar_scene_set_sky(scene.handle(), &sky));
 }
 
-/// Room of slabs with a window to a sky with a sun, a block and a glowing strip; baked to a noise
-/// target, while its golden means come from a fixed number of rays.
+/// Room of slabs with a window to a sky with a sun, a block and a glowing strip. No texel is half in the
+/// room and half outside: which half such a texel keeps depends on the rays.
 void fill_window(GoldenScene& g) {
     kit::Scene& scene = g.scene;
     const uint32_t pale = scene.diffuse({0.7f, 0.65f, 0.6f}), wood = scene.diffuse({0.4f, 0.25f, 0.12f});
@@ -105,10 +105,10 @@ void fill_window(GoldenScene& g) {
     g.slab({2, -1.5f, -0.2f}, {2.2f, 1.5f, 2.6f}, pale, 8);      //
     g.slab({-2.2f, 1.5f, -0.2f}, {2.2f, 1.7f, 2.6f}, pale, 8);   //
     g.slab({-2.2f, -1.7f, -0.2f}, {2.2f, -1.5f, 0.9f}, pale, 8); // around the window
-    g.slab({-2.2f, -1.7f, 2.0f}, {2.2f, -1.5f, 2.6f}, pale, 8);
-    g.slab({-2.2f, -1.7f, 0.9f}, {-0.8f, -1.5f, 2.0f}, pale, 8);
-    g.slab({0.8f, -1.7f, 0.9f}, {2.2f, -1.5f, 2.0f}, pale, 8);
-    g.slab({0.4f, 0.2f, 0}, {1.0f, 0.8f, 0.5f}, pale, 8);
+    g.slab({-2.2f, -1.7f, 2.0f}, {2.2f, -1.5f, 2.6f}, pale, 8);  //
+    g.slab({-2.2f, -1.7f, 0.9f}, {-0.8f, -1.5f, 2.0f}, pale, 8); //
+    g.slab({0.8f, -1.7f, 0.9f}, {2.2f, -1.5f, 2.0f}, pale, 8);   //
+    g.slab({-1.7f, 0.5f, 0}, {-1.2f, 1.0f, 0.5f}, pale, 8);      // a block beside the patch of sun
     kit::MeshData strip;
     strip.quad({-1.99f, -0.5f, 1.5f}, {-1.99f, 0.5f, 1.5f}, {-1.99f, 0.5f, 1.6f}, {-1.99f, -0.5f, 1.6f}, {0, 0},
                {1, 1});
@@ -117,8 +117,8 @@ void fill_window(GoldenScene& g) {
     ajar_light_desc sun = lamp(AJAR_LIGHT_SUN, 4.0f, {1.0f, 0.9f, 0.7f});
     sun.sun_angle = 0.02f;
     scene.light(sun, placed(0, 0, 0, 0.9).data());
-    g.tested = base_settings(4, 1024, 32, 16);
-    g.tested.noise_target = 0.1f;
+    g.noise_factor = 1.4; // the sun through a window is found by few rays: variance itself varies by a tenth
+    g.tested = base_settings(4, 256, 64, 16);
     g.fine = base_settings(4, 2048, 256, 64);
 }
 
@@ -153,7 +153,7 @@ void fill_elements(GoldenScene& g) {
     scene.current_switch = door;
     g.slab({-0.05f, -0.48f, 0.02f}, {0.05f, 0.48f, 1.88f}, scene.diffuse({0.7f, 0.2f, 0.1f}), 8);
     scene.current_switch = crate;
-    g.slab({1.2f, -0.6f, 0}, {1.9f, 0.1f, 0.8f}, scene.diffuse({0.2f, 0.6f, 0.2f}), 8);
+    g.slab({1.2f, -0.6f, -0.02f}, {1.9f, 0.1f, 0.8f}, scene.diffuse({0.2f, 0.6f, 0.2f}), 8);
     scene.current_switch = AJAR_NONE;
     g.tested = base_settings(3, 64, 32, 16);
     g.fine = base_settings(3, 512, 128, 64);
