@@ -16,8 +16,7 @@ constexpr double kFalseAlarm = 1e-4; ///< chance that the right light with new r
 
 std::vector<RegionLight> bake(const golden::GoldenScene& scene) {
     golden::Measurement measurement(scene);
-    for (uint32_t i = 0; i < golden::kGroup; ++i)
-        for (uint32_t i = 0; i < golden::kGroup; ++i) measurement.add(golden::bake(scene, scene.tested, 2 * i + 1));
+    for (uint32_t i = 0; i < golden::kGroup; ++i) measurement.add(golden::bake(scene, scene.tested, 2 * i + 1));
     return measurement.regions();
 }
 

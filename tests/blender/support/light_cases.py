@@ -98,9 +98,14 @@ _BUILDERS = {'lamp': lamp, 'sun': sun, 'emitter': emitter, 'sky': sky}
 
 
 def build_case(name):
-    """Replace the open file by one case's scene. The planes do not shade one another's light."""
+    """Replace the open file by one case's scene."""
     cycles.clear_file()
     scene.register_addon()
+    fill_case(name)
+
+
+def fill_case(name):
+    """Add one case's scene to an empty file. The planes do not shade one another's light."""
     grey = cycles.diffuse_material("Grey", (0.5, 0.5, 0.5))
     _plane("Floor", Matrix.Identity(4), FLOOR, grey)
     tilt = Matrix.Translation((0, 1.3, 0.3)) @ Euler((1.0, 0, 0)).to_matrix().to_4x4()
