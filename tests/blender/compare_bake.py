@@ -3,13 +3,14 @@
 
     python3 tests/blender/compare_bake.py --package DIR/package --reference REF.npz [--out DIR]
             [--tolerance 0.05] [--sigma 1] [--max-back 0.25] [--worst 20]
-            [--require-mean 0.01] [--require-share 0.95]
+            [--report DIR/report.json [--max-turned 8]] [--require-mean 0.01] [--require-share 0.95]
 
 A texel agrees if its luminance differs by at most tolerance * reference + sigma * the combined
 standard error of both bakes. Compared are texels that Ajar calls valid, that Cycles baked and that
 lie in exactly one triangle. Left out, unless --max-back 1, are texels that look into solids (more than
 a quarter of their rays meet back faces) or that coincide with an opposite face: there the two differ
-by intent. With --require-* the exit code tells whether the bakes agree.
+by intent. With --report, neither are objects that Ajar bakes on their back because they are seen from
+there: Cycles bakes the front. With --require-* the exit code tells whether the bakes agree.
 """
 import argparse
 import json
