@@ -5,12 +5,12 @@ namespace bench {
 
 namespace {
 
-constexpr uint32_t kSeed = 1, kPositions = 4;
+constexpr uint32_t kPositions = 4;
 
 LightmapReceivers receivers_of(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, ThreadPool& pool,
                                Progress& progress) {
     std::vector<Warning> ignored;
-    return make_receivers(scene, tracer, coverage, kPositions, kSeed, pool, progress, ignored);
+    return make_receivers(scene, tracer, coverage, kPositions, pool, progress, ignored);
 }
 
 } // namespace

@@ -50,8 +50,8 @@ void build_receivers(benchmark::State& state, const BenchScene& scene) {
     Progress progress;
     std::vector<Warning> warnings;
     for (auto _ : state)
-        benchmark::DoNotOptimize(make_receivers(scene.snapshot(), scene.tracer(), scene.coverage(), kPositions, kSeed,
-                                                pool, progress, warnings));
+        benchmark::DoNotOptimize(
+            make_receivers(scene.snapshot(), scene.tracer(), scene.coverage(), kPositions, pool, progress, warnings));
     count_items(state, scene.receivers().count());
 }
 

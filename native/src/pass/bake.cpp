@@ -182,12 +182,12 @@ std::vector<RayPlan> Baker::plan_rays() {
     const bool timed = settings_.time_limit > 0.0f;
     if (!(settings_.noise_target > 0.0f) && !timed) return plan;
 
-    std::vector<PilotResult> pilot(count);
+    std::vector<PilotResult> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
-    pool_.for_each(count, progress_, [&](size_t i) {
-        const Tile tile = pilot_part(s_.receivers.tiles[i], static_cast<uint32_t>(i));
+    pool_.for_each(pilot.size(), progress_, [&](size_t i) {
+        const Tile tile = pilot_part(s_.receivers.tiles[i / kPilotParts], i % kPilotParts);
         const TileEstimate t = estimate(tile, small, hash_combine(settings_.seed, kSaltPilot), false);
         const float share = 1.0f / static_cast<float>(tile.count);
         for (uint32_t lane = 0; lane < tile.count; ++lane) {

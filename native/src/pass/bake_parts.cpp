@@ -64,29 +64,35 @@ std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const
     return out;
 }
 
-Tile pilot_part(const Tile& tile, uint32_t index) {
-    const uint32_t skip = tile.count > kPilotReceivers ? (hash32(index) % (tile.count - kPilotReceivers)) & ~7u : 0;
-    return {tile.first + skip, std::min(kPilotReceivers, tile.count)};
+Tile pilot_part(const Tile& tile, uint32_t part) {
+    const uint32_t count = std::min(kPilotReceivers, tile.count);
+    const uint32_t first = std::min((tile.count / kPilotParts * part) & ~7u, tile.count - count);
+    return {tile.first + first, count};
 }
 
 std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
                                     const ajar_settings& s, bool gathers) {
     const float floor = dark_level(pilot);
-    std::vector<RayPlan> plan(pilot.size());
-    for (size_t i = 0; i < pilot.size(); ++i) {
-        // The neighbours in tile order pool with the tile itself: eight receivers are few.
-        const PilotResult &before = pilot[i > 0 ? i - 1 : i], &after = pilot[i + 1 < pilot.size() ? i + 1 : i],
-                          &here = pilot[i];
-        const auto pooled = [&](float PilotResult::*v) {
-            return std::max(0.25f * (before.*v + after.*v) + 0.5f * here.*v, here.*v);
+    std::vector<RayPlan> plan(pilot.size() / kPilotParts);
+    for (size_t i = 0; i < plan.size(); ++i) {
+        const PilotResult* parts = &pilot[i * kPilotParts];
+        // Eight receivers are few: all parts of the tile pool with each.
+        const auto pooled = [&](size_t k, float PilotResult::*v) {
+            float sum = 0.0f;
+            for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
+            return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
         };
-        // Both kinds of ray cost about the same; of all splits with one variance this has fewest rays.
-        const float allowed = s.noise_target * (here.level + floor), budget = allowed * allowed + 1e-30f,
-                    gather = std::sqrt(float(pilot_rays.gather) * pooled(&PilotResult::gather_variance)),
-                    direct = std::sqrt(float(pilot_rays.direct) * pooled(&PilotResult::direct_variance));
-        if (gathers) plan[i].gather = power_of_two(gather * (gather + direct) / budget, 64, std::max(s.samples, 64u));
-        plan[i].direct = power_of_two(direct * (gather + direct) / budget, std::min(16u, s.direct_samples),
-                                      std::max(s.direct_samples, 1u));
+        float gather_rays = 0.0f, direct_rays = 0.0f;
+        for (size_t k = 0; k < kPilotParts; ++k) {
+            // Both kinds of ray cost about the same; of all splits with one variance this has fewest rays.
+            const float allowed = s.noise_target * (parts[k].level + floor), budget = allowed * allowed + 1e-30f,
+                        gather = std::sqrt(float(pilot_rays.gather) * pooled(k, &PilotResult::gather_variance)),
+                        direct = std::sqrt(float(pilot_rays.direct) * pooled(k, &PilotResult::direct_variance));
+            gather_rays += gather * (gather + direct) / budget / kPilotParts;
+            direct_rays += direct * (gather + direct) / budget / kPilotParts;
+        }
+        if (gathers) plan[i].gather = power_of_two(gather_rays, 64, std::max(s.samples, 64u));
+        plan[i].direct = power_of_two(direct_rays, std::min(16u, s.direct_samples), std::max(s.direct_samples, 1u));
     }
     return plan;
 }

@@ -11,8 +11,9 @@
 namespace ajar {
 
 inline constexpr uint32_t kSourceSamples = 16; ///< emitter samples per receiver that feed the bounces
-inline constexpr uint32_t kPilotRays = 64;
-inline constexpr uint32_t kPilotReceivers = 8;  ///< of each tile
+inline constexpr uint32_t kPilotRays = 32;
+inline constexpr uint32_t kPilotParts = 4;      ///< of each tile: its light may differ much from place to place
+inline constexpr uint32_t kPilotReceivers = 8;  ///< of each part
 inline constexpr uint32_t kCalibrationStep = 4; ///< every n-th tile is estimated twice
 inline constexpr float kFinalShare = 0.5f;      ///< cosine share of the final rays (algorithms.md 1.10)
 
@@ -23,7 +24,7 @@ struct RayPlan {
     uint32_t gather = 0, direct = 0;
 };
 
-/// What the pilot rays of a tile found, pooled over its receivers.
+/// What the pilot rays of a tile's part found, pooled over its receivers.
 struct PilotResult {
     float level = 0.0f;           ///< mean luminance of the irradiance
     float gather_variance = 0.0f; ///< of a receiver's estimate at the pilot's ray counts
@@ -40,11 +41,11 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
 /// fills can be aimed at exactly.
 std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of);
 
-/// Receivers of a tile that stand for it in the pilot pass.
-Tile pilot_part(const Tile& tile, uint32_t index);
+/// Receivers that stand for a part of a tile in the pilot pass.
+Tile pilot_part(const Tile& tile, uint32_t part);
 
-/// Ray counts per tile that reach the noise target by the pilot's pooled variance, within the
-/// counts of settings (algorithms.md 10.3, 10.4).
+/// Ray counts per tile that reach the noise target by the variance that the pilot found in its parts
+/// ([tiles][kPilotParts]), within the counts of settings (algorithms.md 10.3, 10.4).
 std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
                                     const ajar_settings& settings, bool gathers);
 

@@ -329,8 +329,7 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
 }
 
 /// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
-PilotResult TermBaker::pilot_tile(const Tile& whole, const RayPlan& rays, uint32_t index) {
-    const Tile tile = pilot_part(whole, index);
+PilotResult TermBaker::pilot_tile(const Tile& tile, const RayPlan& rays) const {
     const Estimate t = estimate(tile, rays, hash_combine(settings_.seed, kSaltPilot));
     const float share = 1.0f / static_cast<float>(tile.count);
     PilotResult p;
@@ -360,12 +359,13 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
     const bool timed = settings_.time_limit > 0.0f;
     if (!(settings_.noise_target > 0.0f) && !timed) return plan;
-    std::vector<PilotResult> pilot(count);
+    std::vector<PilotResult> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
-    pool_.for_each(count, progress_,
-                   [&](size_t i) { pilot[i] = pilot_tile(s_.receivers.tiles[i], small, static_cast<uint32_t>(i)); });
+    pool_.for_each(pilot.size(), progress_, [&](size_t i) {
+        pilot[i] = pilot_tile(pilot_part(s_.receivers.tiles[i / kPilotParts], i % kPilotParts), small);
+    });
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
     if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());

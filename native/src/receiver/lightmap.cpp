@@ -12,6 +12,8 @@ namespace ajar {
 namespace {
 
 constexpr int kAlbedoSamples = 16;
+constexpr uint32_t kSidePoints = 16; ///< points of a texel that tell into which parts a wall cuts it
+constexpr uint32_t kPositionSalt = 0xa11ce5u;
 constexpr float kOverlapArea = 1.1f; ///< more triangle area than a texel has means overlapping UVs
 
 uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
@@ -52,7 +54,6 @@ struct Builder {
     const Snapshot& scene;
     const Tracer& tracer;
     const Coverage& coverage;
-    uint32_t seed;
     std::vector<std::pair<uint32_t, uint32_t>> runs; ///< fragments [begin, end) of each receiver
     LightmapReceivers out;
     std::atomic<uint64_t> pushed{0}, clamped{0};
@@ -66,7 +67,8 @@ struct Builder {
     float depth_inside(uint32_t triangle, const Vec2& p) const;
     Vec3 smooth_position(const TexelPoint& p) const;
     Vec3 shading_normal(const TexelPoint& p) const;
-    void keep_one_side(uint32_t receiver);
+    Vec3 origin_at(uint32_t receiver, const TexelPoint& point);
+    void keep_one_side(uint32_t receiver, uint32_t base);
     void find_sharing(const Tile& tile);
     Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
@@ -200,28 +202,34 @@ Vec3 Builder::push_out(Vec3 p, const Frame& frame, float size) {
     return p;
 }
 
-/// Light on the two sides of a wall must not mix in one texel: the positions that see most others
-/// stay, the rest move to them.
-void Builder::keep_one_side(uint32_t r) {
+/// Where a ray that stands for a point of the texel starts.
+Vec3 Builder::origin_at(uint32_t r, const TexelPoint& p) {
+    const Vec3 origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
+    return push_out(origin, out.frame[r], out.texel_size[r]);
+}
+
+/// Light on the two sides of a wall must not mix in one texel: where its positions do not see each other,
+/// all are taken from the largest of the parts that a wall cuts it into.
+void Builder::keep_one_side(uint32_t r, uint32_t base) {
     Vec3* p = &out.positions[size_t{r} * out.positions_per_texel];
     const uint32_t n = out.positions_per_texel;
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
-    const auto sees = [&](uint32_t a, uint32_t b) {
-        return tracer.intersect({p[a] + up, p[b] - p[a], 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
+    const auto sees = [&](const Vec3& a, const Vec3& b) {
+        return tracer.intersect({a + up, b - a, 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
     };
     uint32_t seen = 1;
-    for (uint32_t b = 1; b < n; ++b) seen += sees(0, b);
+    for (uint32_t b = 1; b < n; ++b) seen += sees(p[0], p[b]);
     if (seen == n) return;
     out.cut[r] = 1;
-    std::vector<uint32_t> best, side;
-    for (uint32_t a = 0; a < n; ++a) {
+    std::vector<Vec3> points(p, p + n), best, side;
+    for (uint32_t k = 0; k < kSidePoints; ++k) points.push_back(origin_at(r, point(r, owen_sobol(k, hash32(base)))));
+    for (const Vec3& a : points) {
         side.clear();
-        for (uint32_t b = 0; b < n; ++b)
-            if (a == b || sees(a, b)) side.push_back(b);
+        for (const Vec3& b : points)
+            if (&a == &b || sees(a, b)) side.push_back(b);
         if (side.size() > best.size()) best = side;
     }
-    const std::vector<Vec3> before(p, p + n);
-    for (uint32_t k = 0; k < n; ++k) p[k] = before[best[k % best.size()]];
+    for (uint32_t k = 0; k < n; ++k) p[k] = best[k * best.size() / n];
 }
 
 /// A wall between two texels of a block ends all sharing in it.
@@ -280,13 +288,11 @@ void Builder::build(uint32_t r) {
     set_frame(r);
     set_albedo(r);
     const uint32_t k_count = out.positions_per_texel;
-    const uint32_t base = hash_combine(seed, out.texel[r]);
+    const uint32_t base = hash_combine(kPositionSalt, out.texel[r]);
     for (uint32_t k = 0; k < k_count; ++k) {
-        const TexelPoint p = sub_texel(r, k, base);
-        const Vec3 origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
-        out.positions[size_t{r} * k_count + k] = push_out(origin, out.frame[r], out.texel_size[r]);
+        out.positions[size_t{r} * k_count + k] = origin_at(r, sub_texel(r, k, base));
     }
-    keep_one_side(r);
+    keep_one_side(r, base);
 }
 
 void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector<Warning>& warnings) {
@@ -349,9 +355,9 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
 }
 
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
-                                 uint32_t positions_per_texel, uint32_t seed, ThreadPool& pool, Progress& progress,
+                                 uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
                                  std::vector<Warning>& warnings) {
-    Builder b{scene, tracer, coverage, hash_combine(seed, 0xa11ce5u), {}, {}, {}, {}};
+    Builder b{scene, tracer, coverage, {}, {}, {}, {}};
     b.order();
     const size_t count = b.runs.size();
     b.out.positions_per_texel = positions_per_texel;

@@ -47,9 +47,10 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
                                        uint32_t r);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
-/// (algorithms.md 9.1, 9.2, 9.4). Adds warnings about UVs to warnings.
+/// (algorithms.md 9.1, 9.2, 9.4). They do not depend on the seed of the bake: what side of a wall a texel
+/// shows stays. Adds warnings about UVs to warnings.
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
-                                 uint32_t positions_per_texel, uint32_t seed, ThreadPool& pool, Progress& progress,
+                                 uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
                                  std::vector<Warning>& warnings);
 
 } // namespace ajar
