@@ -22,7 +22,8 @@ struct Texture {
 
     /// Texel at column x, row y, both in range; linear colour, straight alpha.
     Vec4 texel(uint32_t x, uint32_t y) const;
-    /// Bilinear (or nearest) value at uv; texel centres lie at (i + 0.5) / size.
+    /// Bilinear (or nearest) value at uv; texel centres lie at (i + 0.5) / size. sRGB bytes are mixed as they
+    /// are stored and decoded then, as Cycles does: between dark and bright texels that is darker.
     Vec4 sample(const Vec2& uv) const;
 };
 
