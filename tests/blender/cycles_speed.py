@@ -2,14 +2,14 @@
 """How much faster than Cycles does Ajar bake the same texels to the same error?
 
     python3 tests/blender/cycles_speed.py LEVEL.blend --out DIR [--density 4] [--error 0.1] [--bounces 4]
-            [--samples 64] [--first-noise 0.1]
+            [--samples 64] [--first-cap 256]
 
 Both bake every lightmap texel of a copy with plain diffuse materials and static lamps. The error is the
 root mean square over valid texels of the difference of two seeds, over sqrt(2) and over the texel's own
-light plus a hundredth of the mean. Ajar's noise target is lowered until that is at most --error. Cycles
-is timed at two sample counts, which parts the fixed cost of a bake from that of its samples, and scaled by
-the law that the error falls with the square root of the samples. Times are those of the bakes alone,
-without Blender's start and the reading of the scene. Writes DIR/speed.json.
+light plus a hundredth of the mean. Ajar's cap of rays is doubled until that is at most --error. Cycles is
+timed at two sample counts, which parts the fixed cost of a bake from that of its samples. Both times are
+scaled to --error by the law that the error falls with the square root of the rays. Times are those of the
+bakes alone, without Blender's start and the reading of the scene. Writes DIR/speed.json.
 """
 import argparse
 import json
@@ -23,7 +23,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from support import exr, run  # noqa: E402
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
-STEP = 0.75  # of the noise target, from one try to the next
+NOISE = 0.05  # target per texel, of the preview preset
 
 
 def parse():
@@ -36,7 +36,7 @@ def parse():
     parser.add_argument('--error', type=float, default=0.1)
     parser.add_argument('--bounces', type=int, default=4)
     parser.add_argument('--samples', type=int, default=64)
-    parser.add_argument('--first-noise', type=float, default=0.1)
+    parser.add_argument('--first-cap', type=int, default=256, help="rays per texel")
     return parser.parse_args()
 
 
@@ -56,12 +56,12 @@ def read_pages(package):
     return light, [exr.read_exr(os.path.join(package, p['quality']))['validity'] > 0.99 for p in pages]
 
 
-def bake_ajar(args, blend, noise, seed, log):
+def bake_ajar(args, blend, cap, seed, log):
     """(result .blend, package, seconds)"""
     out = os.path.join(os.path.abspath(args.out), f"ajar{seed}")
     flags = [
-        '--density', args.density, '--bounces', args.bounces, '--noise', noise, '--seed', seed,
-        '--samples', 65536,
+        '--density', args.density, '--bounces', args.bounces, '--noise', NOISE, '--seed', seed,
+        '--samples', cap,
     ]  # fmt: skip
     result, package = run.bake(blend, out, flags, log, 'preview')
     with open(os.path.join(out, "report.json"), encoding='utf-8') as file:
@@ -69,17 +69,19 @@ def bake_ajar(args, blend, noise, seed, log):
 
 
 def measure_ajar(args, blend, log):
-    """Lowers the noise target until the error is reached."""
-    noise = args.first_noise
+    """Raises the cap until the error is reached."""
+    cap = args.first_cap
     while True:
-        runs = [bake_ajar(args, blend, noise, seed, log) for seed in (1, 2)]
+        runs = [bake_ajar(args, blend, cap, seed, log) for seed in (1, 2)]
         (first, valid), (second, _) = (read_pages(package) for _, package, _ in runs)
         error = relative_error(first, second, valid)
         seconds = 0.5 * (runs[0][2] + runs[1][2])
-        print(f"ajar: noise target {noise:.4f}, error {error:.4f}, {seconds:.1f} s", flush=True)
+        print(f"ajar: at most {cap} rays, error {error:.4f}, {seconds:.1f} s", flush=True)
         if error <= args.error:
-            return {'noise_target': noise, 'error': error, 'seconds': seconds}, runs[0][0], runs[0][1], valid
-        noise *= STEP
+            needed = seconds * (error / args.error) ** 2
+            found = {'cap': cap, 'error': error, 'seconds': seconds, 'seconds_needed': needed}
+            return found, runs[0][0], runs[0][1], valid
+        cap *= 2
 
 
 def bake_cycles(args, blend, package, samples, seed, log):
@@ -124,7 +126,7 @@ def main():
     run.script("prepare_strict.py", os.path.abspath(args.blend), ['--out', copy], log)
     ajar, result, package, valid = measure_ajar(args, copy, log)
     cycles = measure_cycles(args, result, package, valid, log)
-    speedup = cycles['seconds_needed'] / ajar['seconds']
+    speedup = cycles['seconds_needed'] / ajar['seconds_needed']
     with open(os.path.join(args.out, "speed.json"), 'w', encoding='utf-8') as file:
         json.dump({'error': args.error, 'ajar': ajar, 'cycles': cycles, 'speedup': speedup}, file, indent=1)
     print(
