@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rays of one tile: which of its light sets and doors get how many.
+#include "pass/term_estimate.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kDarkSamples = 2; ///< per receiver and set, where the source pass found the set dark
+constexpr float kEvenLight = 0.8f;   ///< least over most light of neighbours that lie in no shadow's edge
+constexpr uint32_t kMostAims = 4;    ///< doors that a tile aims rays at
+constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's light do not drive its ray counts
+
+} // namespace
+
+/// Light sets that shine on the tile directly, as the source pass saw it.
+std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
+    std::vector<uint32_t> sets;
+    for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+            if (table_[e->term].set() != kNoElement) sets.push_back(table_[e->term].set());
+    std::sort(sets.begin(), sets.end());
+    sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+    return sets;
+}
+
+/// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do.
+void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
+    for (const DirectGroups::Group& g : groups.groups()) {
+        const uint32_t id = g.set == kNoElement ? TermTable::kUnknown : table_.find(Term(g.set));
+        if (id == TermTable::kUnknown) continue;
+        for (uint32_t first = 0; first < tile.count; first += kLanes) {
+            float least = std::numeric_limits<float>::infinity(), most = 0.0f;
+            for (uint32_t lane = first; lane < std::min(first + kLanes, tile.count); ++lane) {
+                const float light = luminance(direct_.of(tile.first + lane, id));
+                least = std::min(least, light), most = std::max(most, light);
+            }
+            if (most == 0.0f)
+                groups.limit(g.set, first / kLanes, kDarkSamples);
+            else if (least > kEvenLight * most)
+                groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
+        }
+    }
+}
+
+/// Luminance that comes back along a ray, each term over what a texel keeps of it, and emission and sky over
+/// what it keeps of the base. Surfaces without stored light may be bright.
+float TermBaker::worth_at(const Ray& ray, const Hit& hit) const {
+    const auto worth = [&](uint32_t term, float light) { return light / std::max(threshold_[term], 1e-30f); };
+    if (hit.triangle == kMiss) return worth(0, luminance(s_.scene.sky.radiance(ray.direction)));
+    const uint8_t flags = s_.surfaces.flags(hit.triangle);
+    if ((flags & SurfaceTable::kUnmapped) != 0) return std::numeric_limits<float>::infinity();
+    float sum = 0.0f;
+    if ((flags & SurfaceTable::kEmits) != 0) sum += worth(0, luminance(s_.scene.emission(hit.triangle, hit.u, hit.v)));
+    const uint32_t texel = s_.surfaces.texel(hit.triangle, hit.u, hit.v);
+    if (!hit.back)
+        for (const TermColor* e = radiance_.begin(texel); e != radiance_.end(texel); ++e)
+            sum += worth(e->term, std::abs(luminance(e->color)));
+    return sum;
+}
+
+/// Rays into the doors through which light of some account comes to the tile.
+uint64_t TermBaker::aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const {
+    const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
+    const uint32_t even = (share + 1) & ~1u;
+    uint64_t rays = 0;
+    for (const AimBox& door : doors_) {
+        if (aims.count() == kMostAims) break;
+        rays += aims.add(
+            s_.tracer, door, [&](const Ray& r, const Hit& h) { return worth_at(r, h); }, even, seed);
+    }
+    return rays;
+}
+
+TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const {
+    Estimate t(table_);
+    t.plan = plan;
+    const GatherScene scene = final_scene();
+    DirectGroups groups(scene.emitters, LightRoles::stored, sets_of(tile));
+    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct,
+                                 hash_combine(seed, s_.receivers.texel[tile.first]));
+    limit_samples(groups, tile);
+    const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
+    TileAims aims(s_.receivers, tile);
+    if (plan.gather != 0) rays += aim_at_doors(aims, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
+    const TileAims* aimed = aims.empty() ? nullptr : &aims;
+    rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
+                          table_, limits_, t.direct);
+    if (plan.gather != 0) {
+        GatherOptions o;
+        o.samples = plan.gather;
+        o.share = kFinalShare;
+        o.emission = true;
+        o.unmapped_direct = settings_.bounces > 0;
+        o.direct = &groups;
+        o.aims = aimed;
+        o.seed = seed;
+        rays += gather_tile(scene, tile, o, rows, table_, limits_, t.gather);
+    }
+    progress_.add_rays(rays);
+    t.finish(tile.count);
+    return t;
+}
+
+/// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
+PilotResult TermBaker::pilot_tile(const Tile& tile, const RayPlan& rays) const {
+    const Estimate t = estimate(tile, rays, hash_combine(settings_.seed, kSaltPilot));
+    const float share = 1.0f / static_cast<float>(tile.count);
+    PilotResult p;
+    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        p.level += std::max(0.0f, luminance(t.total(lane))) * share;
+        p.gather_variance += static_cast<float>(t.gather_variance(t.gather.total_squares(lane))) * share;
+        p.direct_variance += static_cast<float>(t.direct.total_squares(lane)) * share;
+    }
+    for (size_t term = 0; term < t.terms.size(); ++term) {
+        float level = 0.0f;
+        double gather = 0.0, direct = 0.0;
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            level += std::abs(luminance(t.irradiance(term, lane))) * share;
+            if (const auto* b = t.gathered(term, lane)) gather += t.gather_variance(b->squares) * share;
+            if (const auto* b = t.sampled(term, lane)) direct += std::max(b->squares, 0.0) * share;
+        }
+        if (level < kPlanShare * p.level || !(level > 0.0f)) continue;
+        const double scale = double(p.level / level) * (p.level / level);
+        p.gather_variance = std::max(p.gather_variance, static_cast<float>(gather * scale));
+        p.direct_variance = std::max(p.direct_variance, static_cast<float>(direct * scale));
+    }
+    return p;
+}
+
+std::vector<RayPlan> TermBaker::plan_rays() {
+    const size_t count = s_.receivers.tiles.size();
+    std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
+    const bool timed = settings_.time_limit > 0.0f;
+    if (!(settings_.noise_target > 0.0f) && !timed) return plan;
+    std::vector<PilotResult> pilot(count * kPilotParts);
+    const uint64_t rays_before = progress_.rays();
+    const double start = progress_.elapsed();
+    const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
+    pool_.for_each(pilot.size(), progress_, [&](size_t i) {
+        pilot[i] = pilot_tile(pilot_part(s_.receivers.tiles[i / kPilotParts], i % kPilotParts), small);
+    });
+    const double seconds_per_ray =
+        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());
+    if (timed)
+        result_.time_limited =
+            limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
+    return plan;
+}
+
+} // namespace ajar

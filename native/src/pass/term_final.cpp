@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The final pass of a bake with elements, and what it stores.
+#include "pass/term_estimate.h"
+
+namespace ajar {
+
+/// Rows of one tile of the final gather.
+struct FinalTile {
+    std::vector<Term> terms;
+    std::vector<uint32_t> count;
+    std::vector<TermLight> light;      ///< term = index into terms
+    std::vector<double> kept, dropped; ///< luminance per term
+};
+
+void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate& t, FinalTile& out) {
+    out.terms = t.terms;
+    out.kept.assign(t.terms.size(), 0.0);
+    out.dropped.assign(t.terms.size(), 0.0);
+    const float per_ray = 1.0f / static_cast<float>(std::max(plan.gather, 1u));
+    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        const size_t r = tile.first + lane;
+        const size_t before = out.light.size();
+        result_.samples[r] = static_cast<float>(plan.gather);
+        result_.inside[r] = t.gather.inside(lane) * per_ray;
+        for (const uint32_t term : t.terms_at[lane]) {
+            TermLight light{term, t.irradiance(term, lane), {}, static_cast<float>(std::sqrt(t.variance(term, lane)))};
+            const auto *g = t.gathered(term, lane), *d = t.sampled(term, lane);
+            for (int c = 0; c < kShCount; ++c)
+                light.sh[c] = (g != nullptr ? g->sh[c] * per_ray : 0.0f) + (d != nullptr ? d->sh[c] : 0.0f);
+            if (t.terms[term].is_base()) {
+                result_.irradiance[r] = light.irradiance;
+                std::copy(light.sh, light.sh + kShCount, &result_.sh[r * kShCount]);
+                result_.standard_error[r] = light.standard_error;
+                continue;
+            }
+            if (light.irradiance == Vec3(0.0f)) continue;
+            const bool kept = keeps(static_cast<uint32_t>(r), t.terms[term], light);
+            (kept ? out.kept : out.dropped)[term] += std::abs(luminance(light.irradiance));
+            if (kept) out.light.push_back(light);
+        }
+        out.count.push_back(static_cast<uint32_t>(out.light.size() - before));
+    }
+}
+
+void TermBaker::join(std::vector<FinalTile>& tiles) {
+    TermResult& out = result_.terms;
+    for (const FinalTile& t : tiles) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
+    std::sort(out.terms.begin(), out.terms.end());
+    out.terms.erase(std::unique(out.terms.begin(), out.terms.end()), out.terms.end());
+    std::erase_if(out.terms, [](const Term& t) { return t.is_base(); });
+    std::vector<double> kept(out.terms.size(), 0.0), dropped(out.terms.size(), 0.0);
+    out.first.push_back(0);
+    for (FinalTile& t : tiles) {
+        std::vector<uint32_t> number;
+        for (size_t i = 0; i < t.terms.size(); ++i) {
+            number.push_back(static_cast<uint32_t>(std::lower_bound(out.terms.begin(), out.terms.end(), t.terms[i]) -
+                                                   out.terms.begin()));
+            if (t.terms[i].is_base()) continue;
+            kept[number[i]] += t.kept[i];
+            dropped[number[i]] += t.dropped[i];
+        }
+        size_t next = 0;
+        for (const uint32_t count : t.count) {
+            for (uint32_t k = 0; k < count; ++k, ++next) {
+                t.light[next].term = number[t.light[next].term];
+                out.light.push_back(t.light[next]);
+            }
+            out.first.push_back(out.light.size());
+        }
+        t = {};
+    }
+    for (size_t i = 0; i < kept.size(); ++i)
+        out.discarded.push_back(static_cast<float>(dropped[i] / std::max(kept[i] + dropped[i], 1e-30)));
+}
+
+void TermBaker::final_gather(const std::vector<RayPlan>& plan) {
+    const uint32_t n = s_.receivers.count();
+    result_.irradiance.assign(n, Vec3(0.0f));
+    result_.sh.assign(size_t{n} * kShCount, 0.0f);
+    result_.standard_error.assign(n, 0.0f);
+    result_.samples.assign(n, 0.0f);
+    result_.inside.assign(n, 0.0f);
+    std::vector<FinalTile> tiles(s_.receivers.tiles.size());
+    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        store_tile(tile, plan[i], estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal)), tiles[i]);
+    });
+    join(tiles);
+}
+
+/// As in the plain bake: a second answer for a few receivers corrects the strata estimate of all.
+void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
+    const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
+    std::vector<Vec2> parts(count, Vec2(0.0f));
+    pool_.for_each(
+        count, progress_,
+        [&](size_t k) {
+            const size_t i = k * kCalibrationStep;
+            const Tile tile{s_.receivers.tiles[i].first, std::min(kPilotReceivers, s_.receivers.tiles[i].count)};
+            const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)),
+                           b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
+            for (uint32_t lane = 0; lane < tile.count; ++lane) {
+                const float la = luminance(a.total(lane)), lb = luminance(b.total(lane)), level = 0.5f * (la + lb);
+                if (!(level > 0.0f)) continue;
+                const double se = std::sqrt(a.total_variance(lane)) / level;
+                if (se < 1e-5) continue;
+                const float d = (la - lb) / level;
+                parts[k] += Vec2(0.5f * d * d, static_cast<float>(se * se));
+            }
+        },
+        false);
+    double twin = 0.0, strata = 0.0;
+    for (const Vec2& p : parts) twin += p.x, strata += p.y;
+    if (count < 8 || !(strata > 0.0)) return;
+    result_.error_calibration = static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+    for (float& e : result_.standard_error) e *= result_.error_calibration;
+    for (TermLight& l : result_.terms.light) l.standard_error *= result_.error_calibration;
+}
+
+} // namespace ajar
