@@ -25,6 +25,7 @@ LIGHT = {"point": 0, "spot": 1, "sun": 2, "rectangle": 3, "ellipse": 4}
 ELEMENT = {"light_set": 0, "door": 1, "toggle": 2}
 COMBINATIONS = {"NONE": 0, "AUTO": 1, "ALL": 2}
 ROLE = {"primary": 0, "static": 1}
+CHOICE = {"area": 0, "texel": 1}
 SKY = {"none": 0, "constant": 1, "equirect": 2}
 
 Handle = c.c_void_p
@@ -201,6 +202,38 @@ class Progress(c.Structure):
     ]
 
 
+class ReferenceSettings(c.Structure):
+    _fields_ = [
+        ("struct_size", u32),
+        ("points", u32),
+        ("bounces", u32),
+        ("batches", u32),
+        ("time_limit", f32),
+        ("seed", u32),
+        ("point_seed", u32),
+        ("threads", u32),
+        ("choice", u32),
+        ("texel_mean", u32),
+        ("normal", f32 * 3),
+        ("weight_count", u32),
+        ("weights", floats),
+    ]
+
+
+class ReferencePoint(c.Structure):
+    _fields_ = [
+        ("page", u32),
+        ("x", u32),
+        ("y", u32),
+        ("instance", u32),
+        ("triangle", u32),
+        ("u", f32),
+        ("v", f32),
+        ("irradiance", f32 * 3),
+        ("standard_error", f32),
+    ]
+
+
 class LayoutSettings(c.Structure):
     _fields_ = [
         ("struct_size", u32),
@@ -244,6 +277,8 @@ STRUCTS = {
     "ajar_sky_desc": SkyDesc,
     "ajar_settings": Settings,
     "ajar_progress": Progress,
+    "ajar_reference_settings": ReferenceSettings,
+    "ajar_reference_point": ReferencePoint,
     "ajar_layout_settings": LayoutSettings,
     "ajar_layout_mesh_desc": LayoutMeshDesc,
 }
@@ -297,6 +332,14 @@ FUNCTIONS = {
     "ajar_job_read_term": (Result, [Handle, u32, u32, floats, u64]),
     "ajar_job_report": (Result, [Handle, c.c_char_p, P(u64)]),
     "ajar_job_write_package": (Result, [Handle, c.c_char_p, c.c_char_p]),
+    "ajar_reference_settings_init": (None, [P(ReferenceSettings)]),
+    "ajar_reference_start": (Result, [Handle, P(ReferenceSettings), P(Handle)]),
+    "ajar_reference_poll": (Result, [Handle, P(Progress)]),
+    "ajar_reference_cancel": (Result, [Handle]),
+    "ajar_reference_wait": (Result, [Handle, f64]),
+    "ajar_reference_error": (Result, [Handle] + _TEXT),
+    "ajar_reference_release": (Result, [P(Handle)]),
+    "ajar_reference_read": (Result, [Handle, P(ReferencePoint), u64, uints]),
     "ajar_layout_settings_init": (None, [P(LayoutSettings)]),
     "ajar_layout_mesh_desc_init": (None, [P(LayoutMeshDesc)]),
     "ajar_layout_create": (Result, [P(LayoutSettings), P(Handle)]),

@@ -14,6 +14,7 @@ BEGINS_WITH_SIZE(ajar_light_desc);
 BEGINS_WITH_SIZE(ajar_sky_desc);
 BEGINS_WITH_SIZE(ajar_settings);
 BEGINS_WITH_SIZE(ajar_progress);
+BEGINS_WITH_SIZE(ajar_reference_settings);
 BEGINS_WITH_SIZE(ajar_layout_settings);
 BEGINS_WITH_SIZE(ajar_layout_mesh_desc);
 

@@ -108,9 +108,9 @@ void bake(benchmark::State& state, const BenchScene& scene, uint32_t threads) {
     uint64_t rays = 0;
     for (auto _ : state) {
         Job job(scene.shared(), settings);
-        if (job.wait(-1.0) != AJAR_OK) return state.SkipWithError(job.failure().text.c_str());
+        if (job.task().wait(-1.0) != AJAR_OK) return state.SkipWithError(job.task().failure().text.c_str());
         ajar_progress progress;
-        job.poll(progress);
+        job.task().poll(progress);
         rays += progress.rays;
     }
     state.counters["rays_per_second"] = benchmark::Counter(static_cast<double>(rays), benchmark::Counter::kIsRate);

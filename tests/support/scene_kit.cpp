@@ -272,6 +272,29 @@ Layer Bake::term(uint32_t index, uint32_t width, uint32_t height, uint32_t page)
     return l;
 }
 
+std::vector<ajar_reference_point> trace(const Scene& scene, const ajar_reference_settings& settings) {
+    ajar_reference reference = nullptr;
+    check(ajar_reference_start(scene.handle(), &settings, &reference));
+    std::vector<ajar_reference_point> out(settings.points);
+    uint32_t batches = 0;
+    ajar_result result = ajar_reference_wait(reference, -1.0);
+    if (result == AJAR_OK) result = ajar_reference_read(reference, out.data(), out.size(), &batches);
+    const std::string why = ajar_error_message();
+    ajar_reference_release(&reference);
+    if (result != AJAR_OK) throw std::runtime_error(why);
+    return out;
+}
+
+ajar_reference_settings reference_settings(uint32_t bounces, uint32_t points, uint32_t batches) {
+    ajar_reference_settings s;
+    ajar_reference_settings_init(&s);
+    s.bounces = bounces;
+    s.points = points;
+    s.batches = batches;
+    s.texel_mean = 1;
+    return s;
+}
+
 ajar_settings settings(uint32_t bounces, uint32_t samples) {
     ajar_settings s;
     ajar_settings_init(&s);

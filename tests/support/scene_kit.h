@@ -89,6 +89,11 @@ private:
     ajar_job job_ = nullptr;
 };
 
+/// Traces a reference to the end; its points.
+std::vector<ajar_reference_point> trace(const Scene& scene, const ajar_reference_settings& settings);
+/// Reference settings of small tests: whole texels, a given number of points and batches.
+ajar_reference_settings reference_settings(uint32_t bounces, uint32_t points, uint32_t batches);
+
 /// Defaults of small exact tests: fixed sample counts, no stitching.
 ajar_settings settings(uint32_t bounces, uint32_t samples = 256);
 

@@ -16,6 +16,7 @@ ORDER = [
     "receiver",
     "sampling",
     "transport",
+    "reference",
     "pass",
     "post",
     "encode",

@@ -54,6 +54,7 @@ enum {
 typedef struct ajar_scene_impl* ajar_scene;
 typedef struct ajar_job_impl* ajar_job;
 typedef struct ajar_layout_impl* ajar_layout;
+typedef struct ajar_reference_impl* ajar_reference;
 
 /* ---- library ------------------------------------------------------------------------------ */
 
@@ -355,6 +356,56 @@ AJAR_API ajar_result ajar_job_report(ajar_job job, char* buffer, uint64_t* size)
  * swapped in whole; an older package there is replaced only by a complete one. extras is a JSON
  * object merged into the manifest as "extras", or NULL. */
 AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory, const char* extras);
+
+/* ---- reference ---------------------------------------------------------------------------- */
+
+/* How points are chosen: all lightmapped surface alike, or all texels alike. */
+enum { AJAR_CHOICE_AREA = 0, AJAR_CHOICE_TEXEL = 1 };
+#define AJAR_REFERENCE_MIN_BATCHES 4u
+#define AJAR_REFERENCE_BATCH_PATHS 64u
+
+/* Brute force answers to judge bakes by: irradiance at random points of the lightmapped surfaces by
+ * path tracing that shares no sampling, storage or shortcut with the bake. Its physics are the same:
+ * bounces, roles, sides of surfaces, tinted shadows, light sets, doors and toggles. */
+typedef struct ajar_reference_settings {
+    uint32_t struct_size;
+    uint32_t points;     /* 1..1048576 */
+    uint32_t bounces;    /* as in ajar_settings */
+    uint32_t batches;    /* most batches of AJAR_REFERENCE_BATCH_PATHS paths per point, >= AJAR_REFERENCE_MIN_BATCHES */
+    float time_limit;    /* s; no batch starts after it once AJAR_REFERENCE_MIN_BATCHES are done; 0 = none */
+    uint32_t seed;       /* of the paths */
+    uint32_t point_seed; /* of the choice of points */
+    uint32_t threads;    /* 0 = all */
+    uint32_t choice;     /* AJAR_CHOICE_* */
+    uint32_t texel_mean; /* 0: light at the point itself; 1: mean over its texel, which no wall parts */
+    float normal[3];     /* receiver's normal in the tangent frame, 0 0 1 = the surface's own; unit, z > 0 */
+    uint32_t weight_count; /* 0, or the number of elements */
+    const float* weights;  /* [weight_count] state of every element; weight_count 0: as at the start */
+} ajar_reference_settings;
+AJAR_API void ajar_reference_settings_init(ajar_reference_settings* settings);
+
+typedef struct ajar_reference_point {
+    uint32_t page, x, y;         /* texel, y counted from the bottom */
+    uint32_t instance, triangle; /* surface: instance id, triangle of its mesh */
+    float u, v;                  /* barycentric weights of the triangle's corners 1 and 2 */
+    float irradiance[3];         /* W/m^2 */
+    float standard_error;        /* of its luminance, W/m^2, from the spread of the batches */
+} ajar_reference_point;
+
+/* Starts tracing a committed scene on the library's own threads. */
+AJAR_API ajar_result ajar_reference_start(ajar_scene scene, const ajar_reference_settings* settings,
+                                          ajar_reference* out_reference);
+/* These five are to a reference what ajar_job_* are to a bake; rays counts paths. */
+AJAR_API ajar_result ajar_reference_poll(ajar_reference reference, ajar_progress* out_progress);
+AJAR_API ajar_result ajar_reference_cancel(ajar_reference reference);
+AJAR_API ajar_result ajar_reference_wait(ajar_reference reference, double timeout);
+AJAR_API ajar_result ajar_reference_error(ajar_reference reference, char* text, uint64_t text_size, char* culprit,
+                                          uint64_t culprit_size);
+AJAR_API ajar_result ajar_reference_release(ajar_reference* reference);
+/* Copies all points of a finished reference into points, which holds point_count of them, and the
+ * number of batches behind each into *out_batches. */
+AJAR_API ajar_result ajar_reference_read(ajar_reference reference, ajar_reference_point* points, uint64_t point_count,
+                                         uint32_t* out_batches);
 
 /* ---- lightmap UV layout ------------------------------------------------------------------- */
 

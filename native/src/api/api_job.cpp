@@ -116,14 +116,14 @@ AJAR_API ajar_result ajar_job_poll(ajar_job job, ajar_progress* out) {
     return guarded([&] {
         const auto j = jobs().get(job);
         checked(out);
-        j->poll(*out);
+        j->task().poll(*out);
         return AJAR_OK;
     });
 }
 
 AJAR_API ajar_result ajar_job_cancel(ajar_job job) {
     return guarded([&] {
-        jobs().get(job)->cancel();
+        jobs().get(job)->task().cancel();
         return AJAR_OK;
     });
 }
@@ -131,9 +131,9 @@ AJAR_API ajar_result ajar_job_cancel(ajar_job job) {
 AJAR_API ajar_result ajar_job_wait(ajar_job job, double timeout) {
     return guarded([&]() -> ajar_result {
         const auto j = jobs().get(job);
-        const ajar_result result = j->wait(timeout == timeout ? timeout : 0.0);
+        const ajar_result result = j->task().wait(timeout == timeout ? timeout : 0.0);
         if (result >= 0) return result;
-        const Warning why = j->failure();
+        const Warning why = j->task().failure();
         return remember(result, why.text.c_str(), why.culprit.c_str());
     });
 }
@@ -141,7 +141,7 @@ AJAR_API ajar_result ajar_job_wait(ajar_job job, double timeout) {
 AJAR_API ajar_result ajar_job_error(ajar_job job, char* text, uint64_t text_size, char* culprit,
                                     uint64_t culprit_size) {
     return guarded([&] {
-        const Warning why = jobs().get(job)->failure();
+        const Warning why = jobs().get(job)->task().failure();
         copy_text(why.text, text, text_size);
         copy_text(why.culprit, culprit, culprit_size);
         return AJAR_OK;
@@ -153,8 +153,8 @@ AJAR_API ajar_result ajar_job_release(ajar_job* job) {
         const auto j = jobs().take(required(job));
         *job = nullptr;
         // Another thread may wait for it and keep it alive: end it here all the same.
-        j->cancel();
-        j->wait(-1.0);
+        j->task().cancel();
+        j->task().wait(-1.0);
         return AJAR_OK;
     });
 }

@@ -87,6 +87,15 @@ AJAR_API void ajar_settings_init(ajar_settings* s) {
     s->door_rays = 0.25f;
 }
 
+AJAR_API void ajar_reference_settings_init(ajar_reference_settings* s) {
+    if (s == nullptr) return;
+    init_struct(s);
+    s->points = 1000;
+    s->bounces = 6;
+    s->batches = 64;
+    s->normal[2] = 1.0f;
+}
+
 AJAR_API void ajar_term_info_init(ajar_term_info* t) { init_struct(t); }
 AJAR_API void ajar_progress_init(ajar_progress* p) { init_struct(p); }
 

@@ -18,6 +18,10 @@ HandleTable<Layout>& layouts() {
     static auto* table = new HandleTable<Layout>(0x1003);
     return *table;
 }
+HandleTable<ReferenceJob>& references() {
+    static auto* table = new HandleTable<ReferenceJob>(0x1004);
+    return *table;
+}
 
 LastError& last_error() {
     static thread_local LastError error;

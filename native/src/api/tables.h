@@ -3,6 +3,7 @@
 
 #include "api/handles.h"
 #include "api/job.h"
+#include "api/reference_job.h"
 #include "receiver/layout.h"
 #include "scene/snapshot_builder.h"
 
@@ -11,5 +12,6 @@ namespace ajar {
 HandleTable<SnapshotBuilder>& scenes();
 HandleTable<Job>& jobs();
 HandleTable<Layout>& layouts();
+HandleTable<ReferenceJob>& references();
 
 } // namespace ajar

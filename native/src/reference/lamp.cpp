@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/lamp.h"
+
+#include <limits>
+
+namespace ajar {
+
+namespace {
+
+/// Uniform point of the unit disk.
+Vec2 disk(Pcg& random) {
+    const float r = std::sqrt(random.uniform()), angle = 2.0f * kPi * random.uniform();
+    return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// What a spot sends along the unit direction w from it, over its intensity (scene/light.cpp).
+float spot(const Light& l, const Vec3& w) {
+    const float cosine = glm::dot(w, l.axis);
+    if (cosine <= std::max(l.cone_cos, 0.0f)) return 0.0f;
+    if (!(l.cone_smooth > 0.0f)) return cosine;
+    const float t = std::min(1.0f, (cosine - l.cone_cos) / l.cone_smooth);
+    return cosine * t * t * (3.0f - 2.0f * t);
+}
+
+/// Radiance of an area lamp at an angle, over the one it would have without spread.
+float spread(const Light& l, float cosine) {
+    if (l.spread_tan == 0.0f) return 1.0f;
+    return std::max(0.0f, (l.spread_tan - std::tan(std::acos(std::min(cosine, 1.0f)))) * l.spread_scale);
+}
+
+/// A point lamp is a disk that faces p, of the intensity's flux.
+LampPoint ball(const Light& l, const Vec3& p, Pcg& random) {
+    const Vec3 center = l.position - p;
+    const float height = glm::length(center);
+    if (!(height > 0.0f)) return {};
+    Vec3 to = center;
+    if (l.radius > 0.0f) {
+        const Frame f = frame_from_normal(center / height);
+        const Vec2 d = disk(random) * l.radius;
+        to += d.x * f.x + d.y * f.y;
+    }
+    const float distance = glm::length(to);
+    const float cone = l.type == Light::Type::spot ? spot(l, -to / distance) : 1.0f;
+    return {to / distance, distance, l.intensity * (cone * height / (distance * distance * distance))};
+}
+
+LampPoint area(const Light& l, const Vec3& p, Pcg& random) {
+    Vec2 d = l.type == Light::Type::ellipse ? 0.5f * disk(random) : Vec2(random.uniform() - 0.5f);
+    if (l.type == Light::Type::rectangle) d.y = random.uniform() - 0.5f;
+    const Vec3 to = l.position + d.x * l.edge_x + d.y * l.edge_y - p;
+    const float distance = glm::length(to);
+    if (!(distance > 0.0f)) return {};
+    const float cosine = -glm::dot(to, l.axis) / distance;
+    if (!(cosine > 0.0f)) return {};
+    return {to / distance, distance, l.intensity * (l.area * cosine * spread(l, cosine) / (distance * distance))};
+}
+
+LampPoint sun(const Light& l, Pcg& random) {
+    const Frame f = frame_from_normal(l.axis);
+    const Vec2 d = disk(random) * l.radius;
+    return {-glm::normalize(l.axis + d.x * f.x + d.y * f.y), std::numeric_limits<float>::infinity(), l.intensity};
+}
+
+bool is_area(const Light& l) { return l.type == Light::Type::rectangle || l.type == Light::Type::ellipse; }
+
+} // namespace
+
+LampPoint lamp_point(const Light& l, const Vec3& p, Pcg& random) {
+    if (l.type == Light::Type::sun) return sun(l, random);
+    return is_area(l) ? area(l, p, random) : ball(l, p, random);
+}
+
+float lamp_strength(const Light& l, const Vec3& p, const Vec3& n) {
+    const float strength = luminance(l.intensity) * (is_area(l) ? l.area : 1.0f);
+    if (l.type == Light::Type::sun) return strength * std::max(0.0f, -glm::dot(l.axis, n) + l.radius);
+    const Vec3 to = l.position - p;
+    const float extent = is_area(l) ? 0.5f * (glm::length(l.edge_x) + glm::length(l.edge_y)) : l.radius;
+    const float square = glm::dot(to, to) + extent * extent, distance = std::sqrt(square);
+    return strength * std::max(0.0f, (glm::dot(to, n) + extent) / distance) / square;
+}
+
+} // namespace ajar

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/path.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kSureBounces = 2; ///< reflections before paths end by chance
+constexpr int kMaxLayers = 256;      ///< transmissive surfaces one ray may cross
+
+} // namespace
+
+/// A path in hand.
+struct PathTracer::Walk {
+    Vertex at;
+    const SceneState& state;
+    Pcg& random;
+    Vec3 through{1.0f}; ///< what the receiver gets of the irradiance at the vertex
+    Vec3 sum{0.0f};
+    uint32_t mapped = 0; ///< reflections off lightmaps so far
+    uint32_t length = 0; ///< all reflections
+};
+
+Vec3 cosine_direction(const Vec3& n, const Vec2& u, float& cosine) {
+    const float r = std::sqrt(u.x), angle = 2.0f * kPi * u.y;
+    cosine = std::sqrt(std::max(0.0f, 1.0f - u.x));
+    return frame_from_normal(n).to_world({r * std::cos(angle), r * std::sin(angle), cosine});
+}
+
+Vec3 PathTracer::irradiance(Vertex receiver, const Vec2& first, const SceneState& state, Pcg& random) const {
+    receiver.receiver = true;
+    Walk walk{receiver, state, random};
+    Vec2 u = first;
+    while (true) {
+        walk.sum += walk.through * lights_.direct(walk.at, state, random);
+        float cosine;
+        const Vec3 w = cosine_direction(walk.at.normal, u, cosine);
+        if (!(glm::dot(w, walk.at.side) > 0.0f) || !follow(walk, w, cosine)) return walk.sum;
+        u.x = random.uniform();
+        u.y = random.uniform();
+    }
+}
+
+/// Goes along a ray to the next surface that reflects; false if the path ends.
+bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
+    const Sky& sky = world_.scene.sky;
+    Ray ray{walk.at.position, direction};
+    for (int layer = 0; layer < kMaxLayers; ++layer) {
+        const Hit hit = world_.meet(ray, walk.state);
+        if (hit.triangle == kMiss) {
+            if (sky.lit())
+                walk.sum +=
+                    walk.through * sky.radiance(direction) * (kPi * lights_.ray_share_of_sky(direction, cosine));
+            return false;
+        }
+        if (world_.is_inside(hit)) return false;
+        const SurfaceSample s = world_.scene.surface(hit.triangle, hit.u, hit.v);
+        if (max_component(s.emission) > 0.0f) add_emission(walk, ray, hit, s.emission, cosine);
+        const float back = luminance(s.reflectance), on = luminance(s.transmittance);
+        if (!(back + on > 0.0f)) return false;
+        const float goes_on = on / (back + on);
+        if (walk.random.uniform() >= goes_on) {
+            walk.through /= 1.0f - goes_on;
+            return reflect(walk, hit, s.reflectance);
+        }
+        walk.through *= s.transmittance / goes_on;
+        ray.tnear = next_tnear(hit.t);
+    }
+    return false;
+}
+
+void PathTracer::add_emission(Walk& walk, const Ray& ray, const Hit& hit, const Vec3& radiance, float cosine) const {
+    const float facing = std::abs(glm::dot(ray.direction, world_.scene.geometric_normal(hit.triangle)));
+    const float part = lights_.ray_share_of_triangle(hit.triangle, cosine, hit.t, facing);
+    walk.sum +=
+        walk.through * radiance * (kPi * part * walk.state.light_set(world_.scene.instance_of(hit.triangle).light_set));
+}
+
+bool PathTracer::reflect(Walk& walk, const Hit& hit, const Vec3& reflectance) const {
+    const bool mapped = !hit.back && world_.scene.instance_of(hit.triangle).lightmapped;
+    walk.mapped += mapped;
+    if (walk.mapped + (mapped ? 0 : 1) > bounces_) return false;
+    walk.through *= reflectance;
+    if (++walk.length > kSureBounces) {
+        const float survives = std::min(1.0f, max_component(reflectance));
+        if (walk.random.uniform() >= survives) return false;
+        walk.through /= survives;
+    }
+    walk.at = mapped ? front_vertex(world_, hit.triangle, hit.u, hit.v) : flat_vertex(world_, hit);
+    return true;
+}
+
+} // namespace ajar

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "reference/surface.h"
+
+namespace ajar {
+
+/// A place on a lightmapped surface.
+struct Place {
+    uint32_t triangle = 0;
+    float u = 0.0f, v = 0.0f;
+};
+
+/// A receiver that the reference judges: a place and the texel it lies in.
+struct ReferencePoint {
+    Place place;
+    uint32_t page = 0, x = 0, y = 0;
+    std::vector<uint32_t> neighbours; ///< triangles that share the texel, if its mean is wanted
+};
+
+/// Draws places of lightmaps at random. Those inside solids, which nobody sees, are drawn again; with
+/// whole texels also those whose texel a wall parts, for it has no one answer.
+class PointChooser {
+public:
+    /// by_texel: all texels alike, else all surface alike. state: what is there when in doubt.
+    PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state);
+    /// Throws Error where nothing can be chosen.
+    std::vector<ReferencePoint> choose(uint32_t count, uint64_t seed) const;
+    /// Another place of the same texel, uniform over what its triangles cover.
+    Place place_in_texel(const ReferencePoint& point, Pcg& random) const;
+    bool is_buried(const Place& place) const;
+
+private:
+    bool draw(ReferencePoint& point, Pcg& random) const;
+    bool is_parted(const ReferencePoint& point, uint32_t draw) const;
+    void find_neighbours(std::vector<ReferencePoint>& points, const std::vector<uint32_t>& numbers) const;
+
+    const World& world_;
+    SceneState state_;
+    bool whole_texels_;
+    std::vector<uint32_t> triangles_;
+    std::vector<double> running_; ///< running sums of area
+};
+
+} // namespace ajar

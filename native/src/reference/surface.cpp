@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/surface.h"
+
+namespace ajar {
+
+namespace {
+
+Vec3 smooth_position(const Snapshot& s, uint32_t triangle, float u, float v) {
+    const Triangle& t = s.triangles[triangle];
+    const Vec3 flat = s.position(triangle, u, v), n = s.geometric_normal(triangle);
+    if (s.meshes[s.instances[t.instance].mesh].corner_normals.empty()) return flat;
+    const float weight[3] = {1.0f - u - v, u, v};
+    float outward = 0.0f;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 corner = s.corner_normal(triangle, k);
+        outward -= weight[k] * glm::dot(flat - s.positions[t.vertex[k]], corner) * glm::dot(corner, n);
+    }
+    return flat + n * std::max(outward, 0.0f);
+}
+
+} // namespace
+
+Vec3 shading_normal(const Snapshot& s, uint32_t triangle, float u, float v) {
+    const Vec3 n = s.corner_normal(triangle, 0) * (1.0f - u - v) + s.corner_normal(triangle, 1) * u +
+                   s.corner_normal(triangle, 2) * v;
+    return normalize_or(n, s.geometric_normal(triangle));
+}
+
+Vertex front_vertex(const World& world, uint32_t triangle, float u, float v) {
+    const Vec3 position = smooth_position(world.scene, triangle, u, v);
+    const Vec3 n = shading_normal(world.scene, triangle, u, v);
+    return {world.tracer.offset(position, world.scene.geometric_normal(triangle)), n, n, false};
+}
+
+Vertex flat_vertex(const World& world, const Hit& hit) {
+    const Vec3 n = world.scene.geometric_normal(hit.triangle) * (hit.back ? -1.0f : 1.0f);
+    return {world.tracer.offset(world.scene.position(hit.triangle, hit.u, hit.v), n), n, n, false};
+}
+
+} // namespace ajar

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/world.h"
+
+#include "base/hash.h"
+#include "scene/mesh_patch.h"
+
+namespace ajar {
+
+bool SceneState::is_there(const Presence& p) const {
+    if (p.element == kNoElement) return true;
+    if (p.element == own.element) return p.state == own.state;
+    const bool on = unit_float(hash_combine(draw, p.element)) < weights[p.element];
+    return on == p.state;
+}
+
+World::World(const Snapshot& s, const Tracer& t)
+    : scene(s), tracer(t), dead_back_(s.triangles.size()), has_switches_(s.has_switches()) {
+    std::vector<uint8_t> closed;
+    for (const Mesh& m : s.meshes) closed.push_back(find_patches(m).closed);
+    for (size_t i = 0; i < s.triangles.size(); ++i) {
+        const Material& material = s.materials[s.triangles[i].material];
+        const Instance& instance = s.instances[s.triangles[i].instance];
+        const bool solid = closed[instance.mesh] != 0 && !instance.hollow && !material.transmits;
+        dead_back_[i] = solid || material.one_sided;
+    }
+}
+
+Hit World::meet(const Ray& ray, const SceneState& state) const {
+    const Hit fixed = tracer.intersect(ray, kMaskGather);
+    if (!has_switches_) return fixed;
+    thread_local std::vector<Hit> switches;
+    Ray before = ray;
+    if (fixed.triangle != kMiss) before.tfar = fixed.t;
+    tracer.all_hits(before, kMaskGatherSwitch, switches);
+    for (const Hit& h : switches)
+        if (state.is_there(scene.presence(h.triangle))) return h;
+    return fixed;
+}
+
+Vec3 World::transmittance(const Ray& ray, const SceneState& state) const {
+    Vec3 left = tracer.transmittance(ray);
+    if (!has_switches_ || !(max_component(left) > 0.0f)) return left;
+    thread_local std::vector<Hit> switches;
+    tracer.all_hits(ray, kMaskShadowSwitch, switches);
+    for (const Hit& h : switches)
+        if (state.is_there(scene.presence(h.triangle))) left *= scene.surface(h.triangle, h.u, h.v).transmittance;
+    return left;
+}
+
+} // namespace ajar
