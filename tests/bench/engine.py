@@ -2,6 +2,8 @@
 """The engine from Python, in this process: scenes from saved snapshots, bakes as arrays."""
 import contextlib
 import ctypes
+import functools
+import json
 import sys
 import time
 from pathlib import Path
@@ -56,6 +58,29 @@ class Bake:
         pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
         check(self._library, self._library.ajar_job_read_layer(self._job, page, which, pointer, values.size))
         return values
+
+    def terms(self):
+        """(element ids, read(page, shape)) of every term but the base; read gives its irradiance as array."""
+        count, info = ctypes.c_uint32(), abi.TermInfo()
+        self._library.ajar_term_info_init(ctypes.byref(info))
+        check(self._library, self._library.ajar_job_term_count(self._job, ctypes.byref(count)))
+        for term in range(1, count.value):
+            check(self._library, self._library.ajar_job_term(self._job, term, ctypes.byref(info)))
+            yield list(info.elements[: info.element_count]), functools.partial(self._read_term, term)
+
+    def _read_term(self, term, page, shape):
+        values = np.empty(shape, np.float32)
+        pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_float))
+        check(self._library, self._library.ajar_job_read_term(self._job, term, page, pointer, values.size))
+        return values
+
+    def report(self):
+        """The report, parsed."""
+        size = ctypes.c_uint64()
+        check(self._library, self._library.ajar_job_report(self._job, None, ctypes.byref(size)))
+        text = ctypes.create_string_buffer(size.value)
+        check(self._library, self._library.ajar_job_report(self._job, text, ctypes.byref(size)))
+        return json.loads(text.value)
 
     def progress(self):
         """Rays traced and the like."""

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The accuracy command's arithmetic, on made-up bakes whose errors are known."""
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
+import advice  # noqa: E402
+import bakes  # noqa: E402
+import knobs  # noqa: E402
+import measure  # noqa: E402
+import page  # noqa: E402
+import storage  # noqa: E402
+
+COUNT = 20000
+
+
+def made_up(bias, noise, reference_noise=0.0, seed=1):
+    """Error of two bakes with a relative bias and noise at points of very different light."""
+    random = np.random.default_rng(seed)
+    light = np.exp(random.normal(0.0, 1.5, COUNT))
+    own = reference_noise * light
+    truth = measure.Truth(light + own * random.normal(size=COUNT), own)
+    scale = light + measure.FLOOR * light.mean()
+    signs = random.choice([-1.0, 1.0], COUNT)
+    first, second = (light + scale * (bias * signs + noise * random.normal(size=COUNT)) for _ in range(2))
+    return measure.error(truth, first, second)
+
+
+@pytest.mark.parametrize("bias,noise", [(0.0, 0.05), (0.04, 0.0), (0.03, 0.06)])
+def test_bias_and_noise_are_told_apart(bias, noise):
+    error = made_up(bias, noise)
+    assert error.bias.value == pytest.approx(bias, abs=0.003)
+    assert error.noise.value == pytest.approx(noise, abs=0.002)
+    assert error.total.value == pytest.approx(np.hypot(bias, noise), abs=0.002)
+    assert error.total.low <= error.total.value <= error.total.high
+
+
+def test_the_reference_s_own_noise_is_taken_off():
+    error = made_up(0.03, 0.04, reference_noise=0.05)
+    assert error.total.value == pytest.approx(0.05, abs=0.003)
+    assert error.bias.value == pytest.approx(0.03, abs=0.004)
+
+
+def test_one_wrong_point_counts_for_100_percent():
+    light = np.ones(100)
+    truth = measure.Truth(light, 0 * light)
+    wrong = light.copy()
+    wrong[0] = 500.0
+    assert measure.error(truth, wrong, wrong).total.value == pytest.approx(0.1)
+
+
+def test_differences_by_chance_are_not_differences():
+    one, other, better = made_up(0.0, 0.05, seed=1), made_up(0.0, 0.05, seed=2), made_up(0.0, 0.04, seed=3)
+    assert not measure.differs(one, other)
+    assert measure.differs(one, better)
+
+
+def test_spherical_harmonics_give_the_irradiance_of_a_plain_sky():
+    sh = np.zeros((1, 9))
+    sh[0, 0] = 2.0 * np.sqrt(np.pi)  # radiance 1 from everywhere
+    for n in storage.NORMALS:
+        assert storage.sh_irradiance(sh, n, 2)[0] == pytest.approx(np.pi)
+
+
+@pytest.mark.parametrize("value", [1.0, 0.37, 250.0, 1e-5])
+def test_small_floats(value):
+    exponent = int(np.floor(np.log2(value)))
+    stored = max(exponent, -14)
+    fraction = round((value / 2.0**stored - (1.0 if exponent >= -14 else 0.0)) * 64)
+    bits = np.array([((stored + 15) << 6 if exponent >= -14 else 0) + fraction], np.uint32)
+    assert storage.small_float(bits, 6)[0] == pytest.approx(value, rel=0.01, abs=1e-6)
+
+
+def test_lookup_is_bilinear():
+    layer = np.add.outer(10.0 * np.arange(4), np.arange(8)).astype(float)  # rows, columns
+    uv = np.array([[0.5 / 8, 0.5 / 4], [2.0 / 8, 1.0 / 4], [0.0, 0.0], [1.0, 1.0]])
+    assert bakes.lookup([layer], np.zeros(4, int), uv) == pytest.approx([0.0, 1.5 + 5.0, 0.0, 37.0])
+
+
+def trial(knob, value, seconds, bias, noise, seed=0):
+    t = knobs.Trial(knob, value, {})
+    error = made_up(bias, noise, seed=seed + 10)
+    t.results = {"seconds": seconds, "wall": seconds, "texels": 1, "rays": 1, "error": error}
+    t.results.update(estimated=noise, true=noise, report_rms=noise)
+    return t
+
+
+def trials():
+    base = trial("preset", "preview", 10.0, 0.02, 0.06)
+    base.results["knob_values"] = {"bounces": 6, "noise target": 0.05}
+    return [
+        base,
+        trial("noise target", 0.025, 40.0, 0.02, 0.03),
+        trial("noise target", 0.0125, 160.0, 0.02, 0.015),
+        trial("bounces", 1, 9.0, 0.2, 0.06),
+        trial("combinations", "none", 3.0, 0.02, 0.06, seed=4),
+    ]
+
+
+def test_frontier_leaves_out_what_is_beaten():
+    names = [t.name for t in advice.frontier(trials())]
+    assert names[0] == "combinations none" and names[-2:] == ["noise target 0.025", "noise target 0.0125"]
+    assert "bounces 1" not in names
+
+
+def test_the_price_of_a_halving_lies_between_the_settings_around_it():
+    front = advice.frontier(trials())
+    assert 40.0 < advice.seconds_for(front, 0.03) < 160.0
+    assert advice.seconds_for(front, 0.001) is None
+
+
+def test_advice_names_the_knob_that_pays_and_what_is_wasted():
+    all_trials = trials()
+    text = " ".join(advice.recommend(all_trials, all_trials[0], measure.differs, 0.0))
+    assert "Most per second buys noise target 0.025" in text
+    assert "bounces 1" not in text
+    assert "combinations none is no worse" in text
+    assert "the next halving costs" in text
+
+
+def test_numbers_in_words():
+    assert [advice.percent(x) for x in (0.0312, 0.5, 0.004)] == ["3.1%", "50%", "0.4%"]
+    assert [advice.duration(x) for x in (4.0, 42.0, 660.0, 7200.0)] == ["4 s", "42 s", "11.0 min", "2.0 h"]
+
+
+def test_page_is_whole_and_needs_nothing_else(tmp_path):
+    about = {"scene": "a<b", "points": 10, "floor": 0.1, "reference_bounces": 32, "batches": 4, "threads": 2}
+    about.update(reference_seconds=3.0, reference_noise=0.01, state="x", skipped=["y"])
+    all_trials = trials()
+    bands = {"flat": measure.Band(0.2, 0.1, 0.3)}
+    page.write_page(tmp_path / "p.html", about, all_trials, all_trials[0], ["words & numbers"], bands)
+    text = (tmp_path / "p.html").read_text(encoding="utf-8")
+    assert "a&lt;b" in text and "words &amp; numbers" in text
+    assert "http" not in text and "<script" not in text and "nan%" not in text
+    drawings = text.split("<svg")[1:]
+    assert len(drawings) >= 4
+    for drawing in drawings:
+        ElementTree.fromstring("<svg" + drawing.split("</svg>")[0] + "</svg>")
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_plan_tries_every_knob_in_the_engine_s_ranges(quick):
+    from blender_addon import model
+    from blender_addon.fields import ENGINE_FIELDS
+
+    for preset, base in bakes.presets().items():
+        base = {**model.engine_settings(preset.upper()), **base}
+        plan = knobs.plan(preset, base, 8.0, True, quick)
+        assert plan[0].knob == knobs.PRESET and plan[0].value == preset
+        assert len({(t.knob, t.value) for t in plan}) == len(plan)
+        for t in plan:
+            model.check_settings(t.settings, ENGINE_FIELDS)
+            for name in ("samples", "bounce_samples"):
+                value = t.settings.get(name, 1)
+                assert value & (value - 1) == 0, t.name
