@@ -2,6 +2,8 @@
 """What the numbers say, in words."""
 import math
 
+from measure import WORST
+
 
 def percent(x):
     """0.0312 -> 3.1%."""
@@ -60,12 +62,14 @@ def recommend(trials, base, differs, reference_noise):
     error, seconds, front = base.results["error"], base.results["seconds"], frontier(done)
     lines = [
         f"{base.name} costs {duration(seconds)} and is off by {percent(error.total.value)}: "
-        f"noise {percent(error.noise.value)}, bias {percent(error.bias.value)}."
+        f"noise {percent(error.noise.value)}, bias {percent(error.bias.value)}. Half of all points are off by less "
+        f"than {percent(error.median)}; the worst {percent(WORST)} of them make {100 * error.worst:.0f}% of the squared error."
     ]
     lines += _halving(front, error.total.value)
     lines += _buys(gains(done, base, differs), error)
     lines += _share(error)
     lines += _savings(done, base, differs)
+    lines += _honesty(base)
     if reference_noise > error.total.value:
         lines.append(
             f"The reference's own error per point ({percent(reference_noise)}) is larger than what is measured; "
@@ -108,6 +112,15 @@ def _share(error):
             f"{100 * (1 - share):.0f}% of the squared error is noise: more rays help, finer texels do not."
         ]
     return ["Noise and bias weigh about the same: rays alone stop helping soon."]
+
+
+def _honesty(base):
+    """Whether the bake states its noise as it is, within a quarter."""
+    told, true = base.results["estimated"], base.results["true"]
+    if true <= 0.0 or 0.75 <= told / true <= 1.25:
+        return []
+    word = "less" if told < true else "more"
+    return [f"The bake states {word} noise than it has: {percent(told)} instead of {percent(true)}."]
 
 
 def _savings(done, base, differs):

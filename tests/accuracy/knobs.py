@@ -33,14 +33,14 @@ def _power_of_two(x):
 
 
 def plan(preset, base, density, has_elements, quick):
-    """All trials, the preset first, then by how much they tell for their time. base: its settings."""
+    """All trials, the preset first, then the cheapest first. base: its settings."""
     trials = [Trial(PRESET, preset, {})]
     for steps in (_presets(preset), _density(density, quick), _noise(base, quick), _bounce_rays(base, quick)):
         trials += steps
     trials += _positions(base, quick) + _bounces(base, quick) + _rays(quick)
     if has_elements:
         trials += _terms(base, quick)
-    return trials
+    return trials[:1] + sorted(trials[1:], key=lambda t: t.cost)
 
 
 def _presets(preset):

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 FLOOR = 0.05  # of the mean light: darker than this counts as this dark
+WORST = 0.02  # of the points
 RESAMPLES = 300
 BAND = (5.0, 95.0)  # percent of the resamples
 
@@ -52,12 +53,14 @@ class Error:
     bias: Band
     noise: Band
     mean: float  # signed: too bright or too dark on the whole
-    p95: float  # of single points, the reference's noise included
+    median: float  # of single points, the reference's noise included, as is p95
+    p95: float
+    worst: float  # share of the squared error that the worst WORST of the points make
     squares: np.ndarray  # per point: squared error less the reference's noise
 
     def as_json(self):
         parts = {name: getattr(self, name).as_json() for name in ("total", "bias", "noise")}
-        return {**parts, "mean": self.mean, "p95": self.p95}
+        return {**parts, **{name: getattr(self, name) for name in ("mean", "median", "p95", "worst")}}
 
 
 def _root(x):
@@ -72,6 +75,11 @@ def draws(count, seed=0):
 def _band(values, resamples):
     low, high = np.percentile(_root(values[resamples].mean(axis=1)), BAND)
     return Band(float(_root(values.mean())), float(low), float(high))
+
+
+def _worst_share(squares):
+    ordered = np.sort(np.maximum(squares, 0.0))[::-1]
+    return float(ordered[: max(1, round(WORST * len(ordered)))].sum() / max(ordered.sum(), 1e-30))
 
 
 def band_of(squares):
@@ -90,7 +98,9 @@ def error(truth, first, second):
         bias=_band(a * b - own, resamples),
         noise=_band(0.5 * (a - b) ** 2, resamples),
         mean=float(np.mean(0.5 * (first + second)) / np.mean(truth.luminance) - 1.0),
+        median=float(np.median(np.abs(np.concatenate([a, b])))),
         p95=float(np.percentile(np.abs(np.concatenate([a, b])), 95)),
+        worst=_worst_share(squares),
         squares=squares,
     )
 

@@ -143,6 +143,7 @@ class Run:
             "estimated": estimated,
             "true": true,
             "report_rms": reports[0]["error"]["estimated_rms"],
+            "report_rms_other_seed": reports[1]["error"]["estimated_rms"],
         }
         e = trial.results["error"]
         say(

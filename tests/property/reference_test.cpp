@@ -170,6 +170,24 @@ TEST(Reference, AgreesInStatesOfLampDoorAndToggle) {
     }
 }
 
+TEST(Reference, ChoosesNoPlaceThatNobodySees) {
+    // A pillar between floor and ceiling, and a crate without a bottom: only under them it is black.
+    kit::Scene scene;
+    kit::fill_room(scene, {kSize, false});
+    const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f});
+    scene.instance(scene.mesh(kit::box({1.2f, -1.5f, 0}, {1.8f, -0.9f, 3}, false)), grey, AJAR_NONE, "pillar");
+    kit::MeshData crate = kit::box({-1.8f, 0.6f, 0}, {-0.8f, 1.6f, 1}, false);
+    crate.corners.erase(crate.corners.begin(), crate.corners.begin() + 6);
+    crate.uv.erase(crate.uv.begin(), crate.uv.begin() + 6);
+    scene.instance(scene.mesh(crate), grey, AJAR_NONE, "crate");
+    scene.commit();
+    ajar_reference_settings s = kit::reference_settings(2, 500, 4);
+    for (const uint32_t texel_mean : {0u, 1u}) {
+        s.texel_mean = texel_mean;
+        for (const auto& p : kit::trace(scene, s)) EXPECT_GT(p.irradiance[0], 0.0f) << p.x << ' ' << p.y;
+    }
+}
+
 TEST(Reference, IsTheSameForAnyNumberOfThreadsAndDiffersBySeed) {
     kit::Scene scene;
     kit::fill_room(scene);

@@ -85,7 +85,7 @@ def trial(knob, value, seconds, bias, noise, seed=0):
     t = knobs.Trial(knob, value, {})
     error = made_up(bias, noise, seed=seed + 10)
     t.results = {"seconds": seconds, "wall": seconds, "texels": 1, "rays": 1, "error": error}
-    t.results.update(estimated=noise, true=noise, report_rms=noise)
+    t.results.update(estimated=noise, true=noise, report_rms=noise, report_rms_other_seed=noise)
     return t
 
 
@@ -120,6 +120,22 @@ def test_advice_names_the_knob_that_pays_and_what_is_wasted():
     assert "bounces 1" not in text
     assert "combinations none is no worse" in text
     assert "the next halving costs" in text
+
+
+def test_advice_tells_when_the_bake_does_not_know_its_noise():
+    all_trials = trials()
+    words = lambda: " ".join(advice.recommend(all_trials, all_trials[0], measure.differs, 0.0))  # noqa: E731
+    assert "states" not in words()
+    all_trials[0].results["estimated"] = 0.04
+    assert "states less noise than it has: 4% instead of 6%" in words()
+
+
+def test_the_worst_points_are_told_apart():
+    light = np.ones(1000)
+    wrong = light.copy()
+    wrong[:10] += 0.5
+    error = measure.error(measure.Truth(light, 0 * light), wrong, wrong)
+    assert error.worst == pytest.approx(1.0) and error.median == 0.0
 
 
 def test_numbers_in_words():

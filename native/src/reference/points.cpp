@@ -114,20 +114,21 @@ Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) con
     return point.place;
 }
 
-/// Inside a thing that stands there: most ways lead to the inside of a surface. One way is not enough, as
-/// it may end where that thing touches another.
+/// Inside a thing that stands there: most ways lead to the inside of a solid, or all of them to backs. One
+/// way is not enough, as it may end where that thing touches another.
 bool PointChooser::is_buried(const Place& p) const {
     const Frame f = frame_from_normal(world_.scene.geometric_normal(p.triangle));
     const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z);
     SceneState state = state_;
     state.own = world_.scene.presence(p.triangle);
-    int inside = 0, outside = 0;
+    int backs = 0, inside = 0;
     for (const Vec3& w : {Vec3(0.1f, 0.2f, 0.97f), Vec3(0.6f, -0.5f, 0.62f), Vec3(-0.7f, 0.3f, 0.65f)}) {
         const Hit hit = world_.meet({origin, f.to_world(glm::normalize(w))}, state);
-        ++(hit.triangle != kMiss && world_.is_inside(hit) ? inside : outside);
-        if (inside == 2 || outside == 2) break;
+        if (hit.triangle == kMiss || !hit.back) continue;
+        ++backs;
+        inside += world_.is_inside(hit);
     }
-    return inside == 2;
+    return inside >= 2 || backs == 3;
 }
 
 bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {
