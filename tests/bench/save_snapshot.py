@@ -52,6 +52,7 @@ def main():
     args = parse()
     scene.restore_original()
     overrides = {'texels_per_meter': args.density, 'bounces': args.bounces}
+    os.makedirs(args.out, exist_ok=True)
     with open(os.path.join(args.out, "density"), 'w', encoding='utf-8') as file:
         file.write(repr(args.density or bpy.context.scene.ajar.texels_per_meter))
     layout = export(os.path.join(args.out, "snapshot"), {k: v for k, v in overrides.items() if v is not None})

@@ -16,6 +16,7 @@ namespace {
 using Random = std::mt19937;
 constexpr double kAlarm = 1e-4; ///< chance below which samples are said not to follow a density
 constexpr uint32_t kNone = EmitterSet::kNone;
+const Vec2 kMiddle(1.0f / 3.0f);
 
 float unit(Random& random) { return unit_float(static_cast<uint32_t>(random())); }
 Vec2 random_point(Random& random) { return {unit(random), unit(random)}; }
@@ -36,9 +37,10 @@ struct Lit {
     explicit Lit(bool floor = true) {
         if (floor) kit.object(parallelogram({-50, -50, -9}, {100, 0, 0}, {0, 100, 0}), kit.material(Vec3(0.0f)));
     }
-    EmitterSet& build() {
+    /// As if the scene had too many emissive triangles for each to be an emitter.
+    EmitterSet& build(uint32_t singles = 1) {
         scene = &kit.commit();
-        emitters = std::make_unique<EmitterSet>(*scene, pool, progress);
+        emitters = std::make_unique<EmitterSet>(*scene, pool, progress, singles);
         return *emitters;
     }
     /// Positions are given in the kit's space, the scene's are about its middle.
@@ -125,19 +127,29 @@ TEST(Emitters, EveryEmissiveTriangleHasOneEmitterAndOthersHaveNone) {
     }
 }
 
+TEST(Emitters, FewTrianglesAreEmittersOfTheirOwn) {
+    Lit few, many;
+    add_strip(few);
+    add_strip(many);
+    EXPECT_EQ(few.build(20).count(), 20u);
+    EXPECT_LT(many.build(10).count(), 15u);
+}
+
 TEST(Emitters, DensitiesAddToOnePerEmitter) {
     Lit lit;
     add_strip(lit);
     const EmitterSet& set = lit.build();
     std::vector<double> sum(set.count(), 0.0);
     for (uint32_t t = 0; t < lit.scene->triangles.size(); ++t)
-        if (set.emitter_of(t) != kNone) sum[set.emitter_of(t)] += set.triangle_pdf(t, 1.0f, 1.0f) * lit.scene->area(t);
+        if (set.emitter_of(t) != kNone)
+            sum[set.emitter_of(t)] += set.triangle_pdf(t, kMiddle, 1.0f, 1.0f) * lit.scene->area(t);
     for (const double s : sum) EXPECT_NEAR(s, 1.0, 1e-5);
     // Away from the triangle it turns into solid angle with distance^2 / cosine.
     for (uint32_t t = 0; t < lit.scene->triangles.size(); ++t)
-        EXPECT_NEAR(
-            set.emitter_of(t) != kNone ? set.triangle_pdf(t, 3.0f, 0.5f) / set.triangle_pdf(t, 1.0f, 1.0f) : 18.0, 18.0,
-            1e-4);
+        EXPECT_NEAR(set.emitter_of(t) != kNone
+                        ? set.triangle_pdf(t, kMiddle, 3.0f, 0.5f) / set.triangle_pdf(t, kMiddle, 1.0f, 1.0f)
+                        : 18.0,
+                    18.0, 1e-4);
 }
 
 TEST(Emitters, SamplesLieOnTheirEmitterWithItsDensity) {
@@ -157,7 +169,7 @@ TEST(Emitters, SamplesLieOnTheirEmitterWithItsDensity) {
                 if (set.emitter_of(t) != e || outside(lit.corners(t), s.target) > 1e-5) continue;
                 const float cosine = std::abs(glm::dot(s.direction, lit.scene->geometric_normal(t)));
                 const float radiance = lit.scene->emission(t, 0.3f, 0.3f).x;
-                found |= std::abs(set.triangle_pdf(t, s.distance, cosine) / s.pdf - 1.0f) < 1e-3f &&
+                found |= std::abs(set.triangle_pdf(t, kMiddle, s.distance, cosine) / s.pdf - 1.0f) < 1e-3f &&
                          std::abs(s.weight.x * s.pdf / radiance - 1.0f) < 1e-3f;
             }
             ASSERT_TRUE(found) << e;

@@ -25,6 +25,16 @@ public:
         return builder_.add_material(d);
     }
 
+    /// Black, emits an image: width * height luminances, bottom row first, over UV layer 0.
+    uint32_t glowing_image(uint32_t width, uint32_t height, const std::vector<float>& grey) {
+        ajar_closure glow = closure(AJAR_CLOSURE_EMISSION, Vec3(1.0f));
+        glow.color.texture = image(width, height, grey);
+        ajar_material_desc d{};
+        d.closure_count = 1;
+        d.closures = &glow;
+        return builder_.add_material(d);
+    }
+
     /// Three corners per triangle. With UVs (in [0,1], one per corner) it is lightmapped on page.
     uint32_t object(const std::vector<Vec3>& corners, uint32_t material, const std::vector<Vec2>& uv = {},
                     uint32_t page = AJAR_NONE) {
@@ -69,17 +79,9 @@ public:
 
     /// Image sky: width * height luminances, bottom row first, times a colour.
     void sky(uint32_t width, uint32_t height, const std::vector<float>& grey, const Vec3& color = Vec3(1.0f)) {
-        std::vector<float> rgba;
-        for (const float v : grey) rgba.insert(rgba.end(), {v, v, v, 1.0f});
-        ajar_texture_desc t{};
-        t.width = width;
-        t.height = height;
-        t.texel = AJAR_TEXEL_F32;
-        t.texels = rgba.data();
-        t.texel_bytes = rgba.size() * sizeof(float);
         ajar_sky_desc d{};
         d.type = AJAR_SKY_EQUIRECT;
-        d.texture = builder_.add_texture(t);
+        d.texture = image(width, height, grey);
         for (int i = 0; i < 3; ++i) d.color[i] = color[i];
         builder_.set_sky(d);
     }
@@ -91,6 +93,17 @@ public:
     }
 
 private:
+    uint32_t image(uint32_t width, uint32_t height, const std::vector<float>& grey) {
+        std::vector<float> rgba;
+        for (const float v : grey) rgba.insert(rgba.end(), {v, v, v, 1.0f});
+        ajar_texture_desc t{};
+        t.width = width;
+        t.height = height;
+        t.texel = AJAR_TEXEL_F32;
+        t.texels = rgba.data();
+        t.texel_bytes = rgba.size() * sizeof(float);
+        return builder_.add_texture(t);
+    }
     static ajar_input input(const Vec3& value) {
         ajar_input in{};
         for (int i = 0; i < 3; ++i) in.value[i] = value[i];

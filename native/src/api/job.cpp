@@ -16,8 +16,8 @@ void Job::bake(Progress& progress) {
     const Tracer tracer(scene);
     progress.begin_stage(AJAR_STAGE_RECEIVERS, 0.06f);
     const Coverage coverage = rasterize(scene, pool, progress);
-    output_.receivers = make_receivers(scene, tracer, coverage, settings_.positions_per_texel, pool, progress,
-                                       output_.warnings);
+    output_.receivers =
+        make_receivers(scene, tracer, coverage, settings_.positions_per_texel, pool, progress, output_.warnings);
     if (output_.receivers.count() == 0)
         throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
                     scene.name);

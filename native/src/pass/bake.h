@@ -4,10 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include "pass/bake_parts.h"
+#include "pass/noise_plan.h"
 #include "pass/term_result.h"
 
 namespace ajar {
+
+struct TileEstimate;
+struct TileLight;
 
 /// What a bake found, per receiver unless said otherwise.
 struct BakeResult {
@@ -35,7 +38,11 @@ public:
     BakeResult run();
 
 private:
-    struct TileEstimate;
+    /// What the first packet of a tile got beyond the first rays, and the weight of that answer.
+    struct FurtherRays {
+        RayPlan rays;
+        float share = 0.0f;
+    };
 
     void direct_source();
     void bounce(uint32_t index);
@@ -44,10 +51,16 @@ private:
     /// Emitters of the final gather: the scene's, and the texels that stand out.
     EmitterSet find_bright_texels();
     void keep_bounce(const std::vector<Vec3>& irradiance);
-    std::vector<RayPlan> plan_rays();
-    TileEstimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed, bool keep_sh);
-    void final_gather(const std::vector<RayPlan>& plan);
-    void calibrate_error(const std::vector<RayPlan>& plan);
+    void plan_rays();
+    NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
+                         uint32_t seed);
+    DirectGroups look_around(const Tile& tile, uint32_t seed);
+    TileEstimate estimate(const Tile& tile, RayPlan plan, DirectGroups& groups, PacketChoice packets, uint32_t seed,
+                          bool keep_sh);
+    FurtherRays refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
+                       TileLight& light);
+    void final_gather();
+    void calibrate_error();
     bool gathers() const;
     GatherScene final_scene() const {
         return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
@@ -58,7 +71,10 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     BakeResult result_;
-    std::vector<Vec3> current_; ///< irradiance of the bounce in hand
+    NoiseGoal goal_;
+    RayPlan first_;                    ///< rays of every receiver
+    std::vector<FurtherRays> further_; ///< per tile
+    std::vector<Vec3> current_;        ///< irradiance of the bounce in hand
     std::unique_ptr<EmitterSet> final_emitters_;
     std::vector<Vec4> radiance_; ///< [page texels] outgoing radiance that the next gather sees; w = TexelFlag bits
 };

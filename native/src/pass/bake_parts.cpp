@@ -14,15 +14,6 @@ uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
     return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
 }
 
-/// 1% of the median level: what counts as dark.
-float dark_level(const std::vector<PilotResult>& pilot) {
-    std::vector<float> levels;
-    for (const PilotResult& p : pilot) levels.push_back(p.level);
-    if (levels.empty()) return 0.0f;
-    std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
-    return 0.01f * levels[levels.size() / 2];
-}
-
 } // namespace
 
 bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
@@ -70,14 +61,22 @@ Tile pilot_part(const Tile& tile, uint32_t part) {
     return {tile.first + first, count};
 }
 
-std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
+float dark_level(const std::vector<MeasuredNoise>& pilot) {
+    std::vector<float> levels;
+    for (const MeasuredNoise& p : pilot) levels.push_back(p.level);
+    if (levels.empty()) return 0.0f;
+    std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
+    return 0.01f * levels[levels.size() / 2];
+}
+
+std::vector<RayPlan> plan_for_noise(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
                                     const ajar_settings& s, bool gathers) {
     const float floor = dark_level(pilot);
     std::vector<RayPlan> plan(pilot.size() / kPilotParts);
     for (size_t i = 0; i < plan.size(); ++i) {
-        const PilotResult* parts = &pilot[i * kPilotParts];
+        const MeasuredNoise* parts = &pilot[i * kPilotParts];
         // Eight receivers are few: all parts of the tile pool with each.
-        const auto pooled = [&](size_t k, float PilotResult::*v) {
+        const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
             float sum = 0.0f;
             for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
             return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
@@ -86,8 +85,8 @@ std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const
         for (size_t k = 0; k < kPilotParts; ++k) {
             // Both kinds of ray cost about the same; of all splits with one variance this has fewest rays.
             const float allowed = s.noise_target * (parts[k].level + floor), budget = allowed * allowed + 1e-30f,
-                        gather = std::sqrt(float(pilot_rays.gather) * pooled(k, &PilotResult::gather_variance)),
-                        direct = std::sqrt(float(pilot_rays.direct) * pooled(k, &PilotResult::direct_variance));
+                        gather = std::sqrt(float(pilot_rays.gather) * pooled(k, &MeasuredNoise::gather_variance)),
+                        direct = std::sqrt(float(pilot_rays.direct) * pooled(k, &MeasuredNoise::direct_variance));
             gather_rays += gather * (gather + direct) / budget / kPilotParts;
             direct_rays += direct * (gather + direct) / budget / kPilotParts;
         }

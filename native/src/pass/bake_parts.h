@@ -24,10 +24,10 @@ struct RayPlan {
     uint32_t gather = 0, direct = 0;
 };
 
-/// What the pilot rays of a tile's part found, pooled over its receivers.
-struct PilotResult {
+/// Light and noise of some receivers with given ray counts, pooled.
+struct MeasuredNoise {
     float level = 0.0f;           ///< mean luminance of the irradiance
-    float gather_variance = 0.0f; ///< of a receiver's estimate at the pilot's ray counts
+    float gather_variance = 0.0f; ///< of a receiver's estimate
     float direct_variance = 0.0f;
 };
 
@@ -41,12 +41,15 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
 /// fills can be aimed at exactly.
 std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of);
 
+/// 1% of the median level: what counts as dark.
+float dark_level(const std::vector<MeasuredNoise>& pilot);
+
 /// Receivers that stand for a part of a tile in the pilot pass.
 Tile pilot_part(const Tile& tile, uint32_t part);
 
 /// Ray counts per tile that reach the noise target by the variance that the pilot found in its parts
 /// ([tiles][kPilotParts]), within the counts of settings (algorithms.md 10.3, 10.4).
-std::vector<RayPlan> plan_for_noise(const std::vector<PilotResult>& pilot, const RayPlan& pilot_rays,
+std::vector<RayPlan> plan_for_noise(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
                                     const ajar_settings& settings, bool gathers);
 
 /// Halves ray counts until the rest of the bake fits into seconds; true if it had to.

@@ -27,7 +27,7 @@ private:
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
     ReceiverRows prune(const ReceiverRows& rows, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
-    PilotResult pilot_tile(const Tile& tile, const RayPlan& rays) const;
+    MeasuredNoise pilot_tile(const Tile& tile, const RayPlan& rays) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     float worth_at(const Ray& ray, const Hit& hit) const;
     uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;

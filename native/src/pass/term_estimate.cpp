@@ -103,10 +103,10 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
 }
 
 /// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
-PilotResult TermBaker::pilot_tile(const Tile& tile, const RayPlan& rays) const {
+MeasuredNoise TermBaker::pilot_tile(const Tile& tile, const RayPlan& rays) const {
     const Estimate t = estimate(tile, rays, hash_combine(settings_.seed, kSaltPilot));
     const float share = 1.0f / static_cast<float>(tile.count);
-    PilotResult p;
+    MeasuredNoise p;
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         p.level += std::max(0.0f, luminance(t.total(lane))) * share;
         p.gather_variance += static_cast<float>(t.gather_variance(t.gather.total_squares(lane))) * share;
@@ -133,7 +133,7 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
     const bool timed = settings_.time_limit > 0.0f;
     if (!(settings_.noise_target > 0.0f) && !timed) return plan;
-    std::vector<PilotResult> pilot(count * kPilotParts);
+    std::vector<MeasuredNoise> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};

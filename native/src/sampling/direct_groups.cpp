@@ -24,7 +24,7 @@ DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const s
     const auto add = [&](uint32_t set) {
         std::vector<uint32_t> members = emitters.of_set(set);
         for (const uint32_t e : members) group_of_[e] = static_cast<uint32_t>(groups_.size());
-        groups_.push_back({set, LightChoice(emitters, roles, std::move(members))});
+        groups_.emplace_back(set, LightChoice(emitters, roles, std::move(members)));
     };
     add(kNoElement);
     for (const uint32_t set : sets) add(set);
@@ -33,8 +33,22 @@ DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const s
 uint64_t DirectGroups::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                              uint32_t samples, uint32_t unseen_samples, uint32_t seed) {
     uint64_t rays = 0;
-    for (Group& g : groups_) {
+    for (Group& g : groups_)
         rays += g.choice.begin(tracer, receivers, tile, g.set == kNoElement ? seed : hash_combine(seed, g.set));
+    start_at(0);
+    allot(samples, unseen_samples);
+    return rays;
+}
+
+void DirectGroups::start_at(uint32_t local) {
+    for (Group& g : groups_) {
+        g.base = local;
+        g.choice.start_at(local);
+    }
+}
+
+void DirectGroups::allot(uint32_t samples, uint32_t unseen_samples) {
+    for (Group& g : groups_) {
         // Emitters of no set are many and cheap to ask; only whole sets are worth leaving out.
         g.samples = g.choice.empty()      ? 0
                     : g.set == kNoElement ? samples
@@ -42,13 +56,12 @@ uint64_t DirectGroups::begin(const Tracer& tracer, const LightmapReceivers& rece
                                           : unseen_samples;
         g.of.fill(g.samples);
     }
-    return rays;
 }
 
 float DirectGroups::expected(uint32_t local, uint32_t emitter) const {
     if (group_of_[emitter] == EmitterSet::kNone) return 0.0f;
     const Group& g = groups_[group_of_[emitter]];
-    const uint32_t samples = g.of[local / kLanes];
+    const uint32_t samples = g.samples_at(local);
     return samples == 0 ? 0.0f : static_cast<float>(samples) * g.choice.chance(local, emitter);
 }
 

@@ -12,10 +12,18 @@ namespace ajar {
 class DirectGroups {
 public:
     struct Group {
+        Group(uint32_t light_set, LightChoice members) : set(light_set), choice(std::move(members)) {}
+
         uint32_t set; ///< light set or kNoElement
         LightChoice choice;
-        uint32_t samples = 0;                               ///< most per receiver
-        std::array<uint32_t, kTileReceivers / kLanes> of{}; ///< per receiver, for each packet of receivers
+        uint32_t samples = 0; ///< most per receiver
+        /// Samples of each receiver of the packet that begins at local.
+        uint32_t samples_at(uint32_t local) const { return of[(base + local) / kLanes]; }
+
+    private:
+        friend class DirectGroups;
+        std::array<uint32_t, kTileReceivers / kLanes> of{};
+        uint32_t base = 0;
     };
 
     /// sets: the light sets to sample, beside the emitters of none.
@@ -26,6 +34,11 @@ public:
     /// get unseen_samples. Returns the rays traced.
     uint64_t begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t samples,
                    uint32_t unseen_samples, uint32_t seed);
+
+    /// Other counts of samples for the tile as begin() found it.
+    void allot(uint32_t samples, uint32_t unseen_samples);
+    /// From now on receivers count from this one of the tile on, the first of a packet.
+    void start_at(uint32_t local);
 
     /// Lets the receivers of a packet have fewer samples of a light set.
     void limit(uint32_t set, uint32_t packet, uint32_t samples);

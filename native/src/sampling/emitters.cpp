@@ -5,37 +5,28 @@
 #include <map>
 #include <tuple>
 
-#include "base/owen_sobol.h"
 #include "sampling/warp.h"
 
 namespace ajar {
 
 namespace {
 
-constexpr int kEmissionSamples = 16;
-constexpr uint32_t kClusterSize = 8;
-constexpr float kFlatBend = 0.25f;  ///< clusters more bent than this count as shining everywhere
-constexpr float kLargeShare = 0.2f; ///< of the scene's area; larger emitters are left to the gather
+constexpr uint32_t kClusterSize = 8; ///< most triangles of an emitter
+constexpr float kFlatBend = 0.25f;   ///< clusters more bent than this count as shining everywhere
+constexpr float kLargeShare = 0.2f;  ///< of the scene's area; larger emitters are left to the gather
 
 bool two_sided(const Snapshot& s, uint32_t triangle) { return !s.materials[s.triangles[triangle].material].one_sided; }
 
-float mean_emission(const Snapshot& s, uint32_t triangle) {
-    float sum = 0.0f;
-    for (int i = 0; i < kEmissionSamples; ++i) {
-        const Vec2 b = sample_triangle(owen_sobol(i, triangle));
-        sum += luminance(s.emission(triangle, b.x, b.y));
-    }
-    return sum / kEmissionSamples;
-}
-
 } // namespace
 
-EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress)
+EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress, uint32_t singles)
     : scene_(scene), sky_(std::make_shared<SkySampler>(scene.sky)) {
     for (uint32_t i = 0; i < scene.lights.size(); ++i)
         if (!scene.lights[i].dark()) emitters_.push_back({Kind::lamp, i});
     collect(pool, progress);
     drop_large();
+    const size_t crowd = (triangles_.size() + singles - 1) / std::max(singles, 1u);
+    cluster_size_ = static_cast<uint32_t>(std::clamp<size_t>(crowd, 1, kClusterSize));
     triangle_density_.resize(triangles_.empty() ? 0 : scene.triangles.size(), 0.0f);
     triangle_emitter_.resize(triangles_.empty() ? 0 : scene.triangles.size(), kNone);
     split_by_element();
@@ -50,16 +41,10 @@ void EmitterSet::collect(ThreadPool& pool, Progress& progress) {
     std::vector<uint32_t> candidates;
     for (uint32_t t = 0; t < scene_.triangles.size(); ++t)
         if (scene_.materials[scene_.triangles[t].material].emits) candidates.push_back(t);
-    std::vector<float> mean(candidates.size());
-    pool.for_each((candidates.size() + 255) / 256, progress,
-                  [&](size_t block) {
-                      for (size_t i = block * 256; i < std::min(candidates.size(), block * 256 + 256); ++i)
-                          mean[i] = mean_emission(scene_, candidates[i]);
-                  },
-                  false);
-    for (size_t i = 0; i < candidates.size(); ++i) {
-        const float area = scene_.area(candidates[i]);
-        if (mean[i] * area > 0.0f) triangles_.push_back({candidates[i], area, mean[i] * area, 0.0f});
+    cells_ = std::make_shared<const EmissionCells>(scene_, candidates, pool, progress);
+    for (const uint32_t t : candidates) {
+        const float area = scene_.area(t), power = cells_->mean(t) * area;
+        if (power > 0.0f) triangles_.push_back({t, area, power, 0.0f});
     }
     emissive_count_ = static_cast<uint32_t>(triangles_.size());
 }
@@ -109,7 +94,7 @@ Presence EmitterSet::presence(uint32_t e) const {
 }
 
 void EmitterSet::split(uint32_t first, uint32_t count) {
-    if (count <= kClusterSize) return add_cluster(first, count);
+    if (count <= cluster_size_) return add_cluster(first, count);
     const auto centroid = [&](const EmissiveTriangle& t) {
         return scene_.position(t.triangle, 1.0f / 3.0f, 1.0f / 3.0f);
     };
@@ -199,7 +184,8 @@ EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u
     while (i + 1 < c.first + c.count && triangles_[i].running <= target) ++i;
     const EmissiveTriangle& t = triangles_[i];
     u.x = std::clamp((target - (t.running - t.power)) / t.power, 0.0f, 0x1.fffffep-1f);
-    const Vec2 b = sample_triangle(u);
+    float spread;
+    const Vec2 b = cells_->sample(t.triangle, u, spread);
     const Vec3 q = scene_.position(t.triangle, b.x, b.y), to = q - p;
     const float length2 = glm::dot(to, to);
     if (!(length2 > 0.0f)) return {};
@@ -208,7 +194,7 @@ EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u
     float cosine = -glm::dot(w, normal);
     if (cosine < 0.0f && two_sided(scene_, t.triangle)) cosine = -cosine;
     if (!(cosine > 0.0f)) return {};
-    const float density = triangle_pdf(t.triangle, length, cosine);
+    const float density = spread * plain_pdf(t.triangle, length, cosine);
     const Vec3 emission = scene_.emission(t.triangle, b.x, b.y);
     return {w, length, q, emission / density, density, true};
 }
@@ -219,8 +205,12 @@ EmitterSample EmitterSet::sample_sky(const Vec2& u) const {
     return {s.direction, std::numeric_limits<float>::infinity(), Vec3(0.0f), s.radiance / s.pdf, s.pdf, true};
 }
 
-float EmitterSet::triangle_pdf(uint32_t triangle, float distance, float cosine) const {
+float EmitterSet::plain_pdf(uint32_t triangle, float distance, float cosine) const {
     return triangle_density_[triangle] * distance * distance / std::max(cosine, 1e-9f);
+}
+
+float EmitterSet::triangle_pdf(uint32_t triangle, const Vec2& uv, float distance, float cosine) const {
+    return cells_->density(triangle, uv.x, uv.y) * plain_pdf(triangle, distance, cosine);
 }
 
 } // namespace ajar

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "sampling/alias_table.h"
+#include "sampling/emission_cells.h"
 #include "sampling/sky_sampler.h"
 #include "scene/snapshot.h"
 
@@ -35,12 +36,13 @@ struct BrightTexel {
     Presence presence = {}; ///< of its surface
 };
 
-/// Everything that next-event estimation can aim at: lamps, clusters of emissive triangles, an
+/// Everything that next-event estimation can aim at: lamps, emissive triangles or clusters of them, an
 /// image sky. What fills a large part of the view (large dim emitters, plain skies) is left to
 /// the gather rays alone, which find it with less noise.
 class EmitterSet {
 public:
-    EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress);
+    /// Up to singles emissive triangles are emitters of their own; of more, some neighbours share one.
+    EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progress, uint32_t singles = 1024);
 
     uint32_t count() const { return static_cast<uint32_t>(emitters_.size()); }
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
@@ -59,8 +61,9 @@ public:
     uint32_t emitter_of(uint32_t triangle) const {
         return triangle_emitter_.empty() ? kNone : triangle_emitter_[triangle];
     }
-    /// Density per steradian with which sample() of its emitter picks a hit on triangle.
-    float triangle_pdf(uint32_t triangle, float distance, float cosine) const;
+    /// Density per steradian with which sample() of its emitter picks the place (u, v) of a triangle, seen from
+    /// distance at an angle to its normal.
+    float triangle_pdf(uint32_t triangle, const Vec2& uv, float distance, float cosine) const;
     /// Emitter of the image sky, or kNone.
     uint32_t sky_emitter() const { return sky_emitter_; }
     float sky_pdf(const Vec3& w) const { return sky_->pdf(w); }
@@ -105,6 +108,8 @@ private:
     void split(uint32_t first, uint32_t count);
     void add_cluster(uint32_t first, uint32_t count);
     float cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const;
+    /// As triangle_pdf, were the triangle's emission even.
+    float plain_pdf(uint32_t triangle, float distance, float cosine) const;
     EmitterSample sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const;
     EmitterSample sample_sky(const Vec2& u) const;
     EmitterSample sample_bright(const Cluster& c, const Vec3& p, Vec2 u) const;
@@ -113,11 +118,13 @@ private:
 
     const Snapshot& scene_;
     std::shared_ptr<const SkySampler> sky_;
+    std::shared_ptr<const EmissionCells> cells_;
     std::vector<Emitter> emitters_;
     std::vector<Cluster> clusters_;
     std::vector<EmissiveTriangle> triangles_;
     std::vector<uint32_t> triangle_emitter_;
     std::vector<float> triangle_density_; ///< pick probability / area
+    uint32_t cluster_size_ = 1;
     uint32_t sky_emitter_ = kNone;
     uint32_t emissive_count_ = 0;
     AliasTable anywhere_; ///< over all emitters but bright texels

@@ -7,7 +7,8 @@ namespace ajar {
 
 namespace {
 
-constexpr uint32_t kFineCandidates = 32;
+constexpr uint32_t kMostFine = 256;
+constexpr float kFineShare = 0.995f;     ///< of the tile's weight that is chosen from with care
 constexpr uint32_t kProbes = 8;          ///< receivers of the tile that estimate importance
 constexpr uint32_t kVisibilityRays = 16; ///< per candidate and tile
 constexpr float kVisibilityFloor = 0.05f;
@@ -36,7 +37,10 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         return a.weight != b.weight ? a.weight > b.weight : a.emitter < b.emitter;
     });
-    fine_ = std::min<uint32_t>(kFineCandidates, static_cast<uint32_t>(candidates_.size()));
+    float sum = 0.0f, all = 0.0f;
+    for (const Candidate& c : candidates_) all += c.weight;
+    for (fine_ = 0; fine_ < std::min<size_t>(candidates_.size(), kMostFine) && sum <= kFineShare * all; ++fine_)
+        sum += candidates_[fine_].weight;
     for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
 }
 
@@ -103,6 +107,7 @@ void LightChoice::find_variance(const std::vector<Seen>& seen) {
 }
 
 uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
+    base_ = 0;
     find_candidates(receivers, tile);
     if (candidates_.empty()) return 0;
     const uint64_t rays = learn_visibility(tracer, receivers, tile, seed);
@@ -125,8 +130,7 @@ uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& recei
 }
 
 uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
-    const float* row = &running_[size_t{local} * (fine_ + 1)];
-    const float total = row[fine_];
+    const float *row = this->row(local), total = row[fine_];
     float target = u * total;
     const auto slot = static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(row, row + fine_ + 1, target) - row,
                                                                 rest_running_.empty() ? fine_ - 1 : fine_));
@@ -149,7 +153,7 @@ uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
 float LightChoice::chance(uint32_t local, uint32_t emitter) const {
     if (candidates_.empty() || slot_of_[emitter] == EmitterSet::kNone) return 0.0f;
     const uint32_t slot = slot_of_[emitter];
-    const float* row = &running_[size_t{local} * (fine_ + 1)];
+    const float* row = this->row(local);
     if (slot < fine_) return (row[slot] - (slot > 0 ? row[slot - 1] : 0.0f)) / row[fine_];
     const size_t i = slot - fine_;
     return (rest_running_[i] - (i > 0 ? rest_running_[i - 1] : 0.0f)) / row[fine_];

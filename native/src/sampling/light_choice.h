@@ -28,6 +28,8 @@ public:
     bool seen() const { return seen_; }
     /// Rough variance of one sample over its squared mean, from the visibility rays; 0 if they saw nothing.
     float relative_variance() const { return relative_variance_; }
+    /// From now on receivers count from this one of the tile on.
+    void start_at(uint32_t local) { base_ = local; }
     /// Emitter for u in [0,1) and the chance it had; u is rescaled to be used again.
     uint32_t pick(uint32_t local, float& u, float& chance) const;
     /// Chance of an emitter at a receiver of the tile, for MIS.
@@ -50,13 +52,15 @@ private:
                               uint32_t seed);
     void find_variance(const std::vector<Seen>& seen);
 
+    const float* row(uint32_t local) const { return &running_[size_t{base_ + local} * (fine_ + 1)]; }
+
     const EmitterSet& emitters_;
     LightRoles roles_;
     std::vector<uint32_t> choices_;
     bool seen_ = true;
     float relative_variance_ = 0.0f;
     std::vector<Candidate> candidates_; ///< strongest first; the first fine_ are weighed per receiver
-    uint32_t fine_ = 0;
+    uint32_t fine_ = 0, base_ = 0;
     std::vector<float> visibility_;   ///< [fine_]
     std::vector<float> running_;      ///< [tile.count][fine_ + 1] running weights, last is the rest
     std::vector<float> rest_running_; ///< candidates from fine_ on

@@ -49,15 +49,17 @@ Vec3 pick(const Vec4& v, uint32_t channel) {
     }
 }
 
+Vec2 texture_uv(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
+    const Vec2 uv = corner_uv(scene.meshes[at.mesh], in.uv_layer, at);
+    const float* m = in.uv_transform;
+    return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+}
+
 Vec3 evaluate_varying(const Snapshot& scene, const ajar_input& in, const MeshPoint& at) {
     const Mesh& mesh = scene.meshes[at.mesh];
     Vec3 result(in.value[0], in.value[1], in.value[2]);
-    if (in.texture != AJAR_NONE) {
-        const Vec2 uv = corner_uv(mesh, in.uv_layer, at);
-        const float* m = in.uv_transform;
-        const Vec2 mapped(m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]);
-        result *= pick(scene.textures[in.texture].sample(mapped), in.channel);
-    }
+    if (in.texture != AJAR_NONE)
+        result *= pick(scene.textures[in.texture].sample(texture_uv(scene, in, at)), in.channel);
     if (in.color_layer != AJAR_NONE) result *= pick(corner_color(mesh, in.color_layer, at), in.channel);
     return in.invert != 0 ? Vec3(1.0f) - result : result;
 }
@@ -72,6 +74,20 @@ inline Vec3 evaluate(const Snapshot& scene, const ajar_input& in, const MeshPoin
 float weight(const Snapshot& scene, const ajar_closure& c, const MeshPoint& at) {
     const float a = std::clamp(evaluate(scene, c.weight_a, at).x, 0.0f, 1.0f);
     return a == 0.0f ? 0.0f : a * std::clamp(evaluate(scene, c.weight_b, at).x, 0.0f, 1.0f);
+}
+
+constexpr float kVertexColorDetail = 8.0f; ///< texels that stand for colours mixed between corners
+
+float detail(const Snapshot& scene, const ajar_input& in, MeshPoint at) {
+    const float colors = in.color_layer != AJAR_NONE ? kVertexColorDetail : 0.0f;
+    if (in.texture == AJAR_NONE) return colors;
+    const Texture& texture = scene.textures[in.texture];
+    const auto corner = [&](float u, float v) {
+        at.u = u, at.v = v;
+        return texture_uv(scene, in, at) * Vec2(texture.width, texture.height);
+    };
+    const Vec2 a = corner(0.0f, 0.0f), b = corner(1.0f, 0.0f), c = corner(0.0f, 1.0f);
+    return std::max({colors, glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
 }
 
 Vec3 unit(const Vec3& v) { return glm::clamp(v, Vec3(0.0f), Vec3(1.0f)); }
@@ -119,6 +135,15 @@ SurfaceSample Material::sample(const Snapshot& scene, const MeshPoint& at) const
     out.transmittance = unit(out.transmittance);
     if (!is_finite(out.emission)) out.emission = Vec3(0.0f);
     return out;
+}
+
+float Material::emission_detail(const Snapshot& scene, const MeshPoint& at) const {
+    float most = 0.0f;
+    for (const ajar_closure& c : closures)
+        if (c.type == AJAR_CLOSURE_EMISSION)
+            for (const ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength})
+                most = std::max(most, detail(scene, *in, at));
+    return std::isfinite(most) ? most : 0.0f;
 }
 
 Vec3 Material::emission(const Snapshot& scene, const MeshPoint& at) const {

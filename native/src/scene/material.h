@@ -37,6 +37,9 @@ struct Material {
 
     /// Evaluates all closures at a point.
     SurfaceSample sample(const Snapshot& scene, const MeshPoint& at) const;
+    /// How finely emission may vary: longest edge of the triangle at, in texels of what its emission reads;
+    /// 0 for even emission.
+    float emission_detail(const Snapshot& scene, const MeshPoint& at) const;
     /// The emitted radiance alone.
     Vec3 emission(const Snapshot& scene, const MeshPoint& at) const;
 };

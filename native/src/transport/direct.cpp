@@ -34,6 +34,7 @@ struct DirectSampler {
     const Tile& tile;
     MisCounts mis;
     uint32_t seed;
+    PacketChoice packets;
     Sink sink;
     uint32_t first_sample = 0; ///< number of the first sample in the sums
     bool mean = false;         ///< book means over the samples, not sums
@@ -54,10 +55,13 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
     float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
     const uint32_t emitter = group.choice.pick(local, u, chance);
-    const uint32_t position = (sample + h) % g.receivers.positions_per_texel;
+    // The samples of one emitter follow each other: they divide its first coordinate evenly among them, and
+    // the sequence spreads the second and the positions over any few in a row.
+    const Vec2 spread = owen_sobol(sample, h);
+    const uint32_t positions = g.receivers.positions_per_texel,
+                   position = std::min(static_cast<uint32_t>(spread.y * static_cast<float>(positions)), positions - 1);
     const Vec3 p = g.receivers.origins(r)[position];
-    // Positions follow the low bits of the sample number, so the points on the lamp must not.
-    const EmitterSample s = g.emitters.sample(emitter, p, owen_sobol(shuffle_index(sample, h ^ 0x9e3779b9u), h));
+    const EmitterSample s = g.emitters.sample(emitter, p, {u, spread.x});
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
     const float own = static_cast<float>(samples) * s.pdf * chance;
@@ -110,7 +114,7 @@ void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t 
 /// Samples begin to end of the receivers of one packet.
 template <class Sink>
 void DirectSampler<Sink>::shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end) {
-    const uint32_t samples = group.of[first / kLanes];
+    const uint32_t samples = group.samples_at(first);
     for (uint32_t sample = begin; sample < end; ++sample) {
         packet.rays.prepare(kMaskShadowOpaque);
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
@@ -128,8 +132,9 @@ template <class Sink>
 uint64_t DirectSampler<Sink>::run() {
     ShadowPacket packet{};
     for (uint32_t first = 0; first < tile.count; first += kLanes) {
+        if (!packets.has(first)) continue;
         g.progress.check_cancel();
-        const uint32_t samples = group.of[first / kLanes];
+        const uint32_t samples = group.samples_at(first);
         packet.book_scale = mean ? 1.0f / static_cast<float>(samples) : 1.0f;
         packet.arrived = false;
         const uint32_t probes = thrifty && samples > 4 * kProbes ? kProbes : samples;
@@ -154,7 +159,8 @@ uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const 
         if (g.samples == 0) continue;
         const bool is_set = g.set != kNoElement;
         const uint32_t own_seed = is_set ? hash_combine(seed, g.set) : seed;
-        rays += DirectSampler<Sink>{scene, g, tile, mis, own_seed, sink, first_sample, true, thrifty && is_set}.run();
+        rays +=
+            DirectSampler<Sink>{scene, g, tile, mis, own_seed, {}, sink, first_sample, true, thrifty && is_set}.run();
         first_sample += (g.samples + 1) & ~1u; // samples of two groups never make a pair
     }
     return rays;
@@ -163,9 +169,9 @@ uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const 
 } // namespace
 
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile,
-                       const MisCounts& mis, uint32_t seed, TileSums& sums) {
-    return group.samples == 0 ? 0
-                              : DirectSampler<PlainSink>{scene, group, tile, mis, seed, PlainSink(nullptr, sums)}.run();
+                       const MisCounts& mis, uint32_t seed, PacketChoice packets, TileSums& sums) {
+    if (group.samples == 0) return 0;
+    return DirectSampler<PlainSink>{scene, group, tile, mis, seed, packets, PlainSink(nullptr, sums)}.run();
 }
 
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,

@@ -14,9 +14,9 @@ struct MisCounts {
 };
 
 /// Next-event estimation of a tile with one group of emitters: group.samples emitter samples per
-/// receiver are added to sums, which hold totals over samples. Returns the rays traced.
+/// receiver of the chosen packets are added to sums, which hold totals over samples. Returns the rays traced.
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& group, const Tile& tile,
-                       const MisCounts& mis, uint32_t seed, TileSums& sums);
+                       const MisCounts& mis, uint32_t seed, PacketChoice packets, TileSums& sums);
 
 /// The same for scenes with elements and all groups: sums hold the mean over each group's samples.
 /// rows: light of bright texels, null if there are none. thrifty: receivers at which the first samples

@@ -19,6 +19,14 @@ struct GatherScene {
     const Progress& progress;
 };
 
+/// Some of the packets of a tile, kLanes receivers each; all by default.
+struct PacketChoice {
+    const uint8_t* chosen = nullptr; ///< per packet
+
+    /// The packet that begins at a receiver of the tile is one of them.
+    bool has(uint32_t local) const { return chosen == nullptr || chosen[local / kLanes] != 0; }
+};
+
 /// What one gather collects.
 struct GatherOptions {
     uint32_t samples = 64;                ///< rays per receiver, a power of two
@@ -27,6 +35,7 @@ struct GatherOptions {
     bool unmapped_direct = false;         ///< surfaces without lightmap reflect their direct light too
     const DirectGroups* direct = nullptr; ///< emitter samples that share the emission by MIS
     const TileAims* aims = nullptr;       ///< boxes that further rays are aimed at, sharing by MIS
+    PacketChoice packets = {};            ///< that shoot
     uint32_t first_sample = 0;            ///< of the receiver's sequence, a multiple of samples
     uint32_t seed = 0;
 };

@@ -49,17 +49,19 @@ struct Gatherer {
         const uint32_t count = std::min(o.samples, StratifiedBatch::kRays);
         for (uint32_t begin = 0; begin < o.samples; begin += count) {
             g.progress.check_cancel();
-            tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays);
+            tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays, o.packets.chosen);
             // Strata of all receivers together keep rays close, those of few receivers their many sums.
             const uint32_t together = Sink::kTogether < count ? Sink::kTogether : count;
             for (uint32_t part = 0; part < count; part += together)
                 for (uint32_t first = 0; first < tile.count; first += kLanes)
-                    for (uint32_t s = part; s < part + together; ++s) shoot(first, s, begin + s);
+                    for (uint32_t s = part; o.packets.has(first) && s < part + together; ++s)
+                        shoot(first, s, begin + s);
         }
         uint32_t sample = o.samples;
         for (uint32_t aim = 0; o.aims != nullptr && aim < o.aims->count(); ++aim)
             for (uint32_t s = 0; s < o.aims->rays(aim); ++s, ++sample)
-                for (uint32_t first = 0; first < tile.count; first += kLanes) shoot_aimed(first, aim, s, sample);
+                for (uint32_t first = 0; first < tile.count; first += kLanes)
+                    if (o.packets.has(first)) shoot_aimed(first, aim, s, sample);
     }
 
     void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
@@ -255,7 +257,7 @@ struct Gatherer {
         float weight = 1.0f;
         if (e != EmitterSet::kNone) {
             const float facing = std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle)));
-            weight = mis_weight(e, g.emitters.triangle_pdf(hit.triangle, hit.t, facing), from);
+            weight = mis_weight(e, g.emitters.triangle_pdf(hit.triangle, {hit.u, hit.v}, hit.t, facing), from);
         }
         sink.light(through, g.scene.instance_of(hit.triangle).light_set, radiance * weight);
     }

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The final gather of a scene without elements: first rays for every receiver, more for those packets
+// of receivers whose light is still too noisy.
+#include <array>
+
+#include "pass/bake.h"
+#include "pass/tile_estimate.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kPackets = kTileReceivers / kLanes;
+constexpr uint32_t kPool = 4;                  ///< packets whose noise speaks for each of them
+constexpr RayPlan kFirstRays = {64, 64};       ///< enough to measure noise by
+constexpr RayPlan kTrialRays = {256, 256};     ///< of the few places where the pilot looks twice
+constexpr uint32_t kTrialStep = 8;             ///< every n-th tile has one
+using Packets = std::array<uint8_t, kPackets>; ///< marks
+
+void mean_noise(const TileEstimate& t, uint32_t first, uint32_t end, MeasuredNoise& out) {
+    const float share = 1.0f / static_cast<float>(end - first);
+    for (uint32_t lane = first; lane < end; ++lane) {
+        out.level += luminance(t.irradiance(lane)) * share;
+        out.gather_variance += static_cast<float>(t.gather_variance(lane)) * share;
+        out.direct_variance += static_cast<float>(t.direct_variance(lane)) * share;
+    }
+}
+
+/// Noise of each packet: its own, but not less than that of its neighbours together. Eight receivers are
+/// few, and rays that are rare and bright may have missed them.
+std::vector<MeasuredNoise> packet_noise(const TileEstimate& t, uint32_t lanes) {
+    std::vector<MeasuredNoise> own((lanes + kLanes - 1) / kLanes);
+    for (uint32_t p = 0; p < own.size(); ++p) mean_noise(t, p * kLanes, std::min((p + 1) * kLanes, lanes), own[p]);
+    std::vector<MeasuredNoise> pooled = own;
+    for (size_t p = 0; p < own.size(); ++p) {
+        const size_t first = p / kPool * kPool, end = std::min(first + kPool, own.size());
+        float gather = 0.0f, direct = 0.0f;
+        for (size_t q = first; q < end; ++q) gather += own[q].gather_variance, direct += own[q].direct_variance;
+        pooled[p].gather_variance = std::max(own[p].gather_variance, gather / static_cast<float>(end - first));
+        pooled[p].direct_variance = std::max(own[p].direct_variance, direct / static_cast<float>(end - first));
+    }
+    return pooled;
+}
+
+} // namespace
+
+TileEstimate Baker::estimate(const Tile& tile, RayPlan plan, DirectGroups& groups, PacketChoice packets, uint32_t seed,
+                             bool keep_sh) {
+    groups.allot(plan.direct, plan.direct);
+    plan.direct = groups.groups()[0].samples;
+    TileEstimate t{make_sums(keep_sh), make_sums(keep_sh), plan};
+    const GatherScene scene = final_scene();
+    uint64_t rays = sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(plan.gather), kFinalShare}, seed,
+                                  packets, *t.direct);
+    if (plan.gather != 0) {
+        GatherOptions o;
+        o.samples = plan.gather;
+        o.share = kFinalShare;
+        o.emission = true;
+        o.unmapped_direct = settings_.bounces > 0;
+        o.direct = &groups;
+        o.packets = packets;
+        o.seed = seed;
+        rays += gather_tile(scene, tile, o, settings_.bounces > 0 ? radiance_.data() : nullptr, *t.gather);
+    }
+    progress_.add_rays(rays);
+    return t;
+}
+
+/// Emitters of a tile, with visibility asked for.
+DirectGroups Baker::look_around(const Tile& tile, uint32_t seed) {
+    DirectGroups groups(*final_emitters_, LightRoles::stored, {});
+    progress_.add_rays(
+        groups.begin(s_.tracer, s_.receivers, tile, 1, 1, hash_combine(seed, s_.receivers.texel[tile.first])));
+    return groups;
+}
+
+NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
+                            uint32_t seed) {
+    NoiseTrial trial{few, {}, 0.0f};
+    const TileEstimate a = estimate(part, rays, groups, {}, hash_combine(seed, 1), false),
+                       b = estimate(part, rays, groups, {}, hash_combine(seed, 2), false);
+    mean_noise(a, 0, part.count, trial.many);
+    for (uint32_t lane = 0; lane < part.count; ++lane) {
+        const float d = luminance(a.irradiance(lane) - b.irradiance(lane));
+        trial.twin_variance += 0.5f * d * d / static_cast<float>(part.count);
+    }
+    return trial;
+}
+
+/// Pilot: few receivers of every tile with few rays, discarded afterwards. They say what is dark, and what the
+/// rays that the noise aimed at needs will cost.
+void Baker::plan_rays() {
+    const bool timed = settings_.time_limit > 0.0f;
+    goal_ = {settings_.noise_target, 0.0f, {settings_.samples, settings_.direct_samples}, gathers()};
+    first_ = goal_.most;
+    if (!goal_.gathers) first_.gather = 0;
+    if (!(goal_.target > 0.0f) && !timed) return;
+    if (goal_.target > 0.0f)
+        first_ = {std::min(first_.gather, kFirstRays.gather), std::min(first_.direct, kFirstRays.direct)};
+
+    const std::vector<Tile>& tiles = s_.receivers.tiles;
+    std::vector<MeasuredNoise> pilot(tiles.size() * kPilotParts);
+    const uint64_t rays_before = progress_.rays();
+    const double start = progress_.elapsed();
+    const RayPlan small{goal_.gathers ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
+    const RayPlan large{std::min(kTrialRays.gather, first_.gather > 0 ? settings_.samples : 0),
+                        std::min(kTrialRays.direct, settings_.direct_samples)};
+    std::vector<NoiseTrial> trials((tiles.size() + kTrialStep - 1) / kTrialStep);
+    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
+        const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
+        DirectGroups groups = look_around(tiles[i], seed);
+        for (uint32_t k = 0; k < kPilotParts; ++k) {
+            const Tile part = pilot_part(tiles[i], k);
+            groups.start_at(part.first - tiles[i].first);
+            mean_noise(estimate(part, small, groups, {}, seed, false), 0, part.count, pilot[i * kPilotParts + k]);
+            if (i % kTrialStep == 0 && k == i / kTrialStep % kPilotParts)
+                trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups, seed);
+        }
+    });
+    goal_.model = fit_noise_model(trials, small, large);
+    const double seconds_per_ray =
+        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    goal_.dark = dark_level(pilot);
+    if (!timed) return;
+    const double seconds = 0.92 * (settings_.time_limit - progress_.elapsed());
+    result_.time_limited = fit_to_time(pilot, small, tiles, seconds / seconds_per_ray, first_, goal_);
+}
+
+/// Adds further rays to the packets of a tile that need them, all packets with one need together.
+Baker::FurtherRays Baker::refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
+                                 TileLight& light) {
+    const std::vector<MeasuredNoise> noise = packet_noise(first, tile.count);
+    std::vector<RayPlan> more;
+    for (const MeasuredNoise& n : noise) more.push_back(missing_rays(n, first.plan, goal_));
+    std::vector<float> share(noise.size(), 0.0f);
+    std::vector<bool> done(noise.size(), false);
+    for (size_t p = 0; p < noise.size(); ++p) {
+        if (done[p] || (more[p].gather | more[p].direct) == 0) continue;
+        Packets packets{};
+        for (size_t q = p; q < noise.size(); ++q)
+            if (more[q].gather == more[p].gather && more[q].direct == more[p].direct) packets[q] = 1, done[q] = true;
+        const TileEstimate further = estimate(tile, more[p], groups, {packets.data()}, seed, settings_.keep_sh != 0);
+        for (uint32_t q = 0; q < noise.size(); ++q) {
+            if (packets[q] == 0) continue;
+            share[q] = share_of_more(noise[q], first.plan, further.plan, goal_);
+            light.add(further, q * kLanes, std::min((q + 1) * kLanes, tile.count), share[q]);
+        }
+    }
+    for (uint32_t q = 0; q < noise.size(); ++q)
+        light.add(first, q * kLanes, std::min((q + 1) * kLanes, tile.count), 1.0f - share[q]);
+    return {more[0], share[0]};
+}
+
+void Baker::final_gather() {
+    const uint32_t n = s_.receivers.count();
+    const bool keep_sh = settings_.keep_sh != 0;
+    result_.irradiance.resize(n);
+    result_.sh.resize(size_t{n} * kShCount);
+    result_.sh_rgb.resize(keep_sh ? size_t{n} * 3 * kShCount : 0);
+    result_.standard_error.resize(n);
+    result_.samples.resize(n);
+    result_.inside.resize(n);
+    further_.resize(s_.receivers.tiles.size());
+    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
+        DirectGroups groups = look_around(tile, seed);
+        auto light = std::make_unique<TileLight>();
+        const TileEstimate first = estimate(tile, first_, groups, {}, seed, keep_sh);
+        further_[i] = refine(tile, first, groups, hash_combine(seed, 1), *light);
+        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+            const size_t r = tile.first + lane;
+            result_.irradiance[r] = light->irradiance[lane];
+            result_.standard_error[r] = static_cast<float>(std::sqrt(light->variance[lane]));
+            result_.samples[r] = light->samples[lane];
+            result_.inside[r] = light->inside[lane];
+            std::copy_n(light->sh[lane], kShCount, &result_.sh[r * kShCount]);
+            if (keep_sh)
+                std::copy_n(&light->sh_rgb[size_t{lane} * 3 * kShCount], 3 * kShCount,
+                            &result_.sh_rgb[r * 3 * kShCount]);
+        }
+    });
+}
+
+/// The strata estimate is biased up where strata differ in mean. A second, independent answer
+/// for a few receivers measures by how much.
+void Baker::calibrate_error() {
+    const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
+    std::vector<Vec2> parts(count, Vec2(0.0f));
+    pool_.for_each(
+        count, progress_,
+        [&](size_t k) {
+            const size_t i = k * kCalibrationStep;
+            const Tile& whole = s_.receivers.tiles[i];
+            const Tile tile{whole.first, std::min(kPilotReceivers, whole.count)};
+            const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
+            DirectGroups groups = look_around(tile, seed);
+            TileLight twin;
+            twin.add(estimate(tile, first_, groups, {}, seed, false), 0, tile.count, 1.0f - further_[i].share);
+            if (further_[i].share > 0.0f)
+                twin.add(estimate(tile, further_[i].rays, groups, {}, hash_combine(seed, 1), false), 0, tile.count,
+                         further_[i].share);
+            for (uint32_t lane = 0; lane < tile.count; ++lane) {
+                const size_t r = tile.first + lane;
+                const float a = luminance(result_.irradiance[r]), b = luminance(twin.irradiance[lane]);
+                const float level = 0.5f * (a + b);
+                if (!(level > 0.0f)) continue;
+                const float se = result_.standard_error[r] / level, d = (a - b) / level;
+                if (se < 1e-5f) continue;
+                parts[k] += Vec2(0.5f * d * d, se * se);
+            }
+        },
+        false);
+    double twin = 0.0, strata = 0.0;
+    for (const Vec2& p : parts) twin += p.x, strata += p.y;
+    if (count < 8 || !(strata > 0.0)) return;
+    result_.error_calibration = static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+    for (float& e : result_.standard_error) e *= result_.error_calibration;
+}
+
+} // namespace ajar

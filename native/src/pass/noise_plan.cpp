@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pass/noise_plan.h"
+
+#include <bit>
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kLeastMore = 16;
+constexpr size_t kLeastTrials = 8;
+constexpr float kMostPower = 1.6f;
+constexpr uint32_t kStep = 256; ///< counts above it are multiples of it, others powers of two
+
+uint32_t round_up(float rays, uint32_t most) {
+    if (most < kLeastMore) return 0;
+    const auto wanted = static_cast<uint32_t>(std::clamp(rays, float{kLeastMore}, static_cast<float>(most)));
+    const uint32_t up = wanted <= kStep ? std::bit_ceil(wanted) : (wanted + kStep - 1) / kStep * kStep;
+    return up <= most ? up : most < kStep ? std::bit_floor(most) : most / kStep * kStep;
+}
+
+uint32_t left(uint32_t most, uint32_t done) { return most > done ? most - done : 0; }
+
+float variance(const MeasuredNoise& n) { return n.gather_variance + n.direct_variance; }
+
+/// Strata estimate of a place's variance with other rays than it was measured with.
+double variance_with(const MeasuredNoise& n, const RayPlan& measured, const RayPlan& rays, const NoiseModel& model) {
+    const auto scaled = [](double v, double had, double has, double power) {
+        return v > 0.0 ? v * std::pow(had / std::max(has, 1e-3), power) : 0.0;
+    };
+    return scaled(n.gather_variance, measured.gather, rays.gather, model.gather_power) +
+           scaled(n.direct_variance, measured.direct, rays.direct, model.direct_power);
+}
+
+/// Power p by which a variance fell: the middle of log(few / many) over log(rays).
+float typical_power(std::vector<float> falls, float growth) {
+    if (falls.size() < kLeastTrials || !(growth > 1.0f)) return 1.0f;
+    const auto middle = falls.begin() + static_cast<ptrdiff_t>(falls.size() / 2);
+    std::nth_element(falls.begin(), middle, falls.end());
+    return std::clamp(*middle / std::log(growth), 1.0f, kMostPower);
+}
+
+} // namespace
+
+NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many) {
+    std::vector<float> gather, direct;
+    double twin = 0.0, strata = 0.0;
+    for (const NoiseTrial& t : trials) {
+        if (t.many.gather_variance > 0.0f && t.few.gather_variance > 0.0f)
+            gather.push_back(std::log(t.few.gather_variance / t.many.gather_variance));
+        if (t.many.direct_variance > 0.0f && t.few.direct_variance > 0.0f)
+            direct.push_back(std::log(t.few.direct_variance / t.many.direct_variance));
+        const double level = double(t.many.level) * t.many.level, v = variance(t.many);
+        if (!(level > 0.0) || !(v > 1e-10 * level)) continue;
+        twin += t.twin_variance / level, strata += v / level;
+    }
+    const auto growth = [](uint32_t a, uint32_t b) { return a > 0 ? float(b) / static_cast<float>(a) : 1.0f; };
+    NoiseModel model;
+    model.gather_power = typical_power(std::move(gather), growth(few.gather, many.gather));
+    model.direct_power = typical_power(std::move(direct), growth(few.direct, many.direct));
+    if (trials.size() >= kLeastTrials && strata > 0.0)
+        model.calibration = static_cast<float>(std::clamp(twin / strata, 0.25, 1.0));
+    return model;
+}
+
+RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal) {
+    if (!(goal.target > 0.0f)) return {};
+    const double allowed = double(goal.target) * (noise.level + goal.dark),
+                 budget = allowed * allowed / goal.model.calibration, first = variance(noise);
+    if (!(first > budget) || !std::isfinite(first)) return {};
+    // Averaged by inverse variance, both answers together reach the budget. Both kinds of ray cost about the
+    // same; of all splits with one variance this has fewest rays.
+    const double second = std::max(budget * first / (first - budget), 1e-30),
+                 gather = std::sqrt(double(done.gather) * noise.gather_variance),
+                 direct = std::sqrt(double(done.direct) * noise.direct_variance),
+                 power = (gather * goal.model.gather_power + direct * goal.model.direct_power) / (gather + direct);
+    const double growth = std::pow(first / second, 1.0 / power - 1.0);
+    const RayPlan more{goal.gathers ? round_up(static_cast<float>(growth * gather * (gather + direct) / second),
+                                               left(goal.most.gather, done.gather))
+                                    : 0,
+                       round_up(static_cast<float>(growth * direct * (gather + direct) / second),
+                                left(goal.most.direct, done.direct))};
+    // Each answer stands on its own: emission is shared by both kinds of ray.
+    if ((goal.gathers && more.gather == 0) || more.direct == 0) return {};
+    return more;
+}
+
+float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal) {
+    const double first = variance(noise), second = variance_with(noise, done, more, goal.model);
+    return first + second > 0.0 ? static_cast<float>(first / (first + second)) : 0.5f;
+}
+
+double predict_rays(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
+                    const RayPlan& first, const NoiseGoal& goal) {
+    double sum = 0.0;
+    for (size_t i = 0; i < pilot.size(); ++i) {
+        MeasuredNoise n = pilot[i], gather = n, direct = n;
+        gather.direct_variance = direct.gather_variance = 0.0f;
+        n.gather_variance = static_cast<float>(variance_with(gather, pilot_rays, first, goal.model));
+        n.direct_variance = static_cast<float>(variance_with(direct, pilot_rays, first, goal.model));
+        const RayPlan more = missing_rays(n, first, goal);
+        sum += double(tiles[i / kPilotParts].count) / kPilotParts *
+               (first.gather + first.direct + more.gather + more.direct);
+    }
+    return sum;
+}
+
+bool fit_to_time(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
+                 double affordable, RayPlan& first, NoiseGoal& goal) {
+    const auto fits = [&] { return predict_rays(pilot, pilot_rays, tiles, first, goal) <= affordable; };
+    if (fits()) return false;
+    if (const float wanted = goal.target; wanted > 0.0f) {
+        float low = wanted, high = 1e3f * wanted;
+        for (int i = 0; i < 24; ++i) {
+            goal.target = std::sqrt(low * high);
+            (fits() ? high : low) = goal.target;
+        }
+        goal.target = high;
+        if (fits()) return true;
+        goal.target = 0.0f;
+    }
+    while (!fits() && (first.gather > 8 || first.direct > 4)) {
+        if (first.gather > 8) first.gather /= 2;
+        if (first.direct > 4) first.direct /= 2;
+    }
+    return true;
+}
+
+} // namespace ajar

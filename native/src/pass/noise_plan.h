@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "pass/bake_parts.h"
+
+namespace ajar {
+
+/// How the noise of answers behaves, as a scene's pilot found it.
+struct NoiseModel {
+    float calibration = 1.0f;  ///< true variance over the strata estimate's (algorithms.md 10.2)
+    float gather_power = 1.0f; ///< variance falls with rays to this power; strata make it more than 1
+    float direct_power = 1.0f;
+};
+
+/// The noise that a bake aims at, and the rays that it may take for it.
+struct NoiseGoal {
+    float target = 0.0f; ///< relative standard error per texel; 0: every receiver gets the first rays alone
+    float dark = 0.0f;   ///< W/m^2; light below it may be as noisy as this much light
+    RayPlan most = {};   ///< per receiver
+    bool gathers = true;
+    NoiseModel model = {};
+};
+
+/// Noise of one place with few and with many rays, and what two answers with many say of it.
+struct NoiseTrial {
+    MeasuredNoise few, many;
+    float twin_variance = 0.0f; ///< half the mean squared difference of the two
+};
+
+/// Powers are typical ones; the calibration weighs all places alike, relative to their light.
+NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many);
+
+/// Rays that receivers still need after rays whose noise was measured; {0, 0}: none. Their answer is to be
+/// averaged with the first one, weighed by share_of_more() (algorithms.md 10.3: one decision).
+RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal);
+
+/// Weight of the answer of the further rays, by inverse variance.
+float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal);
+
+/// What the final gather will take in rays: first for every receiver, then what the pilot's parts
+/// ([tiles][kPilotParts], measured with pilot_rays) say is missing.
+double predict_rays(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
+                    const RayPlan& first, const NoiseGoal& goal);
+
+/// Raises the noise aimed at, then lowers the first rays, until the predicted rays are at most affordable; true
+/// if it had to.
+bool fit_to_time(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
+                 double affordable, RayPlan& first, NoiseGoal& goal);
+
+} // namespace ajar

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How many rays a noise target or a time limit buys.
+#include "pass/noise_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace ajar {
+namespace {
+
+constexpr RayPlan kFirst = {64, 64};
+constexpr NoiseGoal kGoal = {0.05f, 0.0f, {1024, 1024}, true, {}};
+
+/// Noise of light 1 whose relative standard error is error, the given part of its variance from gather rays.
+MeasuredNoise noise(float error, float gather_part = 0.5f) {
+    return {1.0f, error * error * gather_part, error * error * (1.0f - gather_part)};
+}
+
+TEST(NoisePlan, QuietLightNeedsNothing) {
+    const RayPlan more = missing_rays(noise(0.049f), kFirst, kGoal);
+    EXPECT_EQ(more.gather, 0u);
+    EXPECT_EQ(more.direct, 0u);
+}
+
+TEST(NoisePlan, BothAnswersTogetherReachTheTarget) {
+    for (const float error : {0.06f, 0.1f, 0.15f})
+        for (const float part : {0.1f, 0.5f, 0.9f}) {
+            const MeasuredNoise n = noise(error, part);
+            const RayPlan more = missing_rays(n, kFirst, kGoal);
+            const double second = n.gather_variance * 64.0 / more.gather + n.direct_variance * 64.0 / more.direct,
+                         share = share_of_more(n, kFirst, more, kGoal),
+                         both = share * share * second + (1.0 - share) * (1.0 - share) * error * error;
+            EXPECT_LE(std::sqrt(both), 0.05 * 1.0001) << error << " " << part;
+            EXPECT_GE(std::sqrt(both), 0.03) << error << " " << part; // counts are rounded up
+            EXPECT_EQ(more.gather > more.direct, part > 0.5f);
+        }
+}
+
+TEST(NoisePlan, DarkLightMayBeNoisy) {
+    NoiseGoal goal = kGoal;
+    goal.dark = 10.0f;
+    EXPECT_EQ(missing_rays(noise(0.4f), kFirst, goal).gather, 0u);
+}
+
+TEST(NoisePlan, CountsStayUnderTheCapAndFillStrata) {
+    for (const float error : {0.06f, 0.2f, 1.0f, 100.0f}) {
+        const RayPlan more = missing_rays(noise(error), kFirst, kGoal);
+        EXPECT_LE(kFirst.gather + more.gather, kGoal.most.gather);
+        EXPECT_LE(kFirst.direct + more.direct, kGoal.most.direct);
+        EXPECT_TRUE(more.gather % 256 == 0 || (more.gather < 256 && (more.gather & (more.gather - 1)) == 0));
+    }
+}
+
+TEST(NoisePlan, NothingIsAddedToWhatTheCapAllows) {
+    NoiseGoal goal = kGoal;
+    goal.most = kFirst;
+    EXPECT_EQ(missing_rays(noise(1.0f), kFirst, goal).gather, 0u);
+}
+
+TEST(NoisePlan, TheModelLearnsHowNoiseFalls) {
+    std::vector<NoiseTrial> trials;
+    for (int i = 0; i < 20; ++i) {
+        NoiseTrial t{noise(0.4f), noise(0.4f), 0.0f};
+        t.many.gather_variance *= std::pow(8.0f, -1.3f);
+        t.many.direct_variance *= std::pow(8.0f, -0.7f); // rare bright samples; not believed
+        t.twin_variance = 0.5f * (t.many.gather_variance + t.many.direct_variance);
+        trials.push_back(t);
+    }
+    const NoiseModel model = fit_noise_model(trials, {32, 32}, {256, 256});
+    EXPECT_NEAR(model.gather_power, 1.3f, 1e-4f);
+    EXPECT_EQ(model.direct_power, 1.0f);
+    EXPECT_NEAR(model.calibration, 0.5f, 1e-4f);
+    EXPECT_EQ(fit_noise_model({}, {32, 32}, {256, 256}).calibration, 1.0f);
+}
+
+TEST(NoisePlan, TimeIsSavedOnNoiseFirstAndOnFirstRaysLast) {
+    const std::vector<Tile> tiles = {{0, 256}};
+    const std::vector<MeasuredNoise> pilot(kPilotParts, noise(0.3f));
+    RayPlan first = kFirst;
+    NoiseGoal goal = kGoal;
+    const double all = predict_rays(pilot, {32, 32}, tiles, first, goal);
+    EXPECT_FALSE(fit_to_time(pilot, {32, 32}, tiles, all, first, goal));
+    EXPECT_EQ(goal.target, kGoal.target);
+    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 0.5 * all, first, goal));
+    EXPECT_GT(goal.target, kGoal.target);
+    EXPECT_EQ(first.gather, 64u);
+    EXPECT_LE(predict_rays(pilot, {32, 32}, tiles, first, goal), 0.5 * all);
+    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 256.0 * 40.0, first, goal));
+    EXPECT_LE(first.gather + first.direct, 40u);
+    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 0.0, first, goal)); // no fewer than the fewest
+    EXPECT_EQ(first.gather, 8u);
+}
+
+} // namespace
+} // namespace ajar
