@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Measure speed; `./dev bench` runs this after a build.
 
-    ./dev bench [--level FILE.blend [--density 8]] [--filter REGEX] [--repeats 5] [--threads N]
+    ./dev bench [--level FILE.blend [--density 8] | --package DIR] [--filter REGEX] [--repeats 5] [--threads N]
 
 Prints a table and writes build/bench/bench.json. A ratio compares two things measured in turn in one run, so
 it holds on a busy machine; the rest are medians over the repeats. Parts are measured on one thread, whole bakes
-on --threads. With --level the scene is the level instead of the built-in room.
+on --threads. With --level the scene is the level instead of the built-in room. With --package, what changes of
+weights cost a game that loaded it, on one thread.
 """
 import argparse
 import datetime
@@ -27,6 +28,7 @@ def parse(arguments):
         prog="./dev bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument('--level', type=Path, help="measure on this .blend")
+    parser.add_argument('--package', type=Path, help="measure the run time on this package")
     parser.add_argument('--density', type=float, default=8, help="texels per metre of the level")
     parser.add_argument('--filter', default='.', help="only benchmarks whose suite/case/size matches")
     parser.add_argument('--repeats', type=int, default=5)
@@ -118,6 +120,8 @@ def describe(entries):
             )
         elif "rays_per_second" in e:
             yield f"{e['name']:36} {e['rays_per_second'] / 1e6:8.2f} Mrays/s   {e['seconds']:.2f} s, {e['texels']:.0f} texels"
+        elif e['name'].startswith("runtime/"):
+            yield f"{e['name']:36} {e['seconds'] * 1e3:8.3f} ms   {e['ns_per_item']:.2f} ns each"
         else:
             yield f"{e['name']:36} {e['ns_per_item']:8.1f} ns each"
 
@@ -164,11 +168,14 @@ def main(arguments):
             save_snapshot(args.level, args.density),
             args.level.stem,
         ]
+    if args.package:
+        package = args.package.resolve()
+        program = [BUILD / "bin" / "ajar_runtime_bench", package, package.parent.name]
     about = context(args.threads)
     report, peak = measure(
         program,
         [
-            f"--threads={args.threads}",
+            *([] if args.package else [f"--threads={args.threads}"]),
             f"--benchmark_filter={args.filter}",
             f"--benchmark_repetitions={max(args.repeats, 2)}",
             "--benchmark_min_time=0.2",

@@ -27,11 +27,13 @@ private:
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
     ReceiverRows prune(const ReceiverRows& rows, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
-    MeasuredNoise pilot_tile(const Tile& tile, const RayPlan& rays) const;
+    MeasuredNoise pilot_noise(const Tile& tile, const RayPlan& rays, const DirectGroups& groups) const;
+    DirectGroups look_around(const Tile& tile, uint32_t samples, uint32_t seed) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     float worth_at(const Ray& ray, const Hit& hit) const;
     uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
+    Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
     void final_gather(const std::vector<RayPlan>& plan);
     void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
     void join(std::vector<struct FinalTile>& tiles);

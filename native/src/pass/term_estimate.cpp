@@ -72,14 +72,25 @@ uint64_t TermBaker::aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed
     return rays;
 }
 
+/// The tile's emitters, with visibility asked for and samples shared out.
+DirectGroups TermBaker::look_around(const Tile& tile, uint32_t samples, uint32_t seed) const {
+    DirectGroups groups(*final_emitters_, LightRoles::stored, sets_of(tile));
+    progress_.add_rays(groups.begin(s_.tracer, s_.receivers, tile, samples, samples,
+                                    hash_combine(seed, s_.receivers.texel[tile.first])));
+    limit_samples(groups, tile);
+    return groups;
+}
+
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const {
+    return estimate(tile, plan, look_around(tile, plan.direct, seed), seed);
+}
+
+TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
+                                        uint32_t seed) const {
     Estimate t(table_);
     t.plan = plan;
     const GatherScene scene = final_scene();
-    DirectGroups groups(scene.emitters, LightRoles::stored, sets_of(tile));
-    uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, plan.direct, plan.direct,
-                                 hash_combine(seed, s_.receivers.texel[tile.first]));
-    limit_samples(groups, tile);
+    uint64_t rays = 0;
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
     TileAims aims(s_.receivers, tile);
     if (plan.gather != 0) rays += aim_at_doors(aims, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
@@ -103,8 +114,8 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, u
 }
 
 /// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
-MeasuredNoise TermBaker::pilot_tile(const Tile& tile, const RayPlan& rays) const {
-    const Estimate t = estimate(tile, rays, hash_combine(settings_.seed, kSaltPilot));
+MeasuredNoise TermBaker::pilot_noise(const Tile& tile, const RayPlan& rays, const DirectGroups& groups) const {
+    const Estimate t = estimate(tile, rays, groups, hash_combine(settings_.seed, kSaltPilot));
     const float share = 1.0f / static_cast<float>(tile.count);
     MeasuredNoise p;
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
@@ -137,8 +148,14 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
-    pool_.for_each(pilot.size(), progress_, [&](size_t i) {
-        pilot[i] = pilot_tile(pilot_part(s_.receivers.tiles[i / kPilotParts], i % kPilotParts), small);
+    pool_.for_each(count, progress_, [&](size_t i) {
+        const Tile& tile = s_.receivers.tiles[i];
+        DirectGroups groups = look_around(tile, small.direct, hash_combine(settings_.seed, kSaltPilot));
+        for (uint32_t k = 0; k < kPilotParts; ++k) {
+            const Tile part = pilot_part(tile, k);
+            groups.start_at(part.first - tile.first);
+            pilot[i * kPilotParts + k] = pilot_noise(part, small, groups);
+        }
     });
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
