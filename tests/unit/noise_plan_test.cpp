@@ -58,13 +58,26 @@ TEST(NoisePlan, NothingIsAddedToWhatTheCapAllows) {
     EXPECT_EQ(missing_rays(noise(1.0f), kFirst, goal).gather, 0u);
 }
 
+TEST(NoisePlan, TilesGetWhatTheirPartsNeed) {
+    NoiseGoal goal = kGoal;
+    std::vector<MeasuredNoise> pilot(2 * kPilotParts, noise(0.01f));
+    for (uint32_t k = 0; k < kPilotParts; ++k) pilot[kPilotParts + k] = noise(0.2f);
+    const std::vector<RayPlan> plan = plan_tiles(pilot, {32, 32}, goal);
+    EXPECT_EQ(plan[0].gather, 64u);
+    EXPECT_EQ(plan[0].direct, 16u);
+    EXPECT_EQ(plan[1].gather, 512u); // a variance of 16 times the budget with 32 rays
+    goal.model.calibration = 0.25f;
+    EXPECT_EQ(plan_tiles(pilot, {32, 32}, goal)[1].gather, 128u);
+}
+
 TEST(NoisePlan, TheModelLearnsHowNoiseFalls) {
     std::vector<NoiseTrial> trials;
     for (int i = 0; i < 20; ++i) {
-        NoiseTrial t{noise(0.4f), noise(0.4f), 0.0f};
+        NoiseTrial t{noise(0.4f), noise(0.4f), 0.0f, 0.0f};
         t.many.gather_variance *= std::pow(8.0f, -1.3f);
         t.many.direct_variance *= std::pow(8.0f, -0.7f); // rare bright samples; not believed
-        t.twin_variance = 0.5f * (t.many.gather_variance + t.many.direct_variance);
+        t.strata_variance = t.many.gather_variance + t.many.direct_variance;
+        t.twin_variance = 0.5f * t.strata_variance;
         trials.push_back(t);
     }
     const NoiseModel model = fit_noise_model(trials, {32, 32}, {256, 256});

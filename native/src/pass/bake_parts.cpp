@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pass/bake_parts.h"
 
-#include <bit>
-
 namespace ajar {
 
 namespace {
 
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
 constexpr float kQuadNormal = 0.95f;  ///< receivers of a 2x2 block share bounce rays if their normals agree
-
-uint32_t power_of_two(float v, uint32_t low, uint32_t high) {
-    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9f)), low, high));
-}
 
 } // namespace
 
@@ -67,33 +61,6 @@ float dark_level(const std::vector<MeasuredNoise>& pilot) {
     if (levels.empty()) return 0.0f;
     std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
     return 0.01f * levels[levels.size() / 2];
-}
-
-std::vector<RayPlan> plan_for_noise(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
-                                    const ajar_settings& s, bool gathers) {
-    const float floor = dark_level(pilot);
-    std::vector<RayPlan> plan(pilot.size() / kPilotParts);
-    for (size_t i = 0; i < plan.size(); ++i) {
-        const MeasuredNoise* parts = &pilot[i * kPilotParts];
-        // Eight receivers are few: all parts of the tile pool with each.
-        const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
-            float sum = 0.0f;
-            for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
-            return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
-        };
-        float gather_rays = 0.0f, direct_rays = 0.0f;
-        for (size_t k = 0; k < kPilotParts; ++k) {
-            // Both kinds of ray cost about the same; of all splits with one variance this has fewest rays.
-            const float allowed = s.noise_target * (parts[k].level + floor), budget = allowed * allowed + 1e-30f,
-                        gather = std::sqrt(float(pilot_rays.gather) * pooled(k, &MeasuredNoise::gather_variance)),
-                        direct = std::sqrt(float(pilot_rays.direct) * pooled(k, &MeasuredNoise::direct_variance));
-            gather_rays += gather * (gather + direct) / budget / kPilotParts;
-            direct_rays += direct * (gather + direct) / budget / kPilotParts;
-        }
-        if (gathers) plan[i].gather = power_of_two(gather_rays, 64, std::max(s.samples, 64u));
-        plan[i].direct = power_of_two(direct_rays, std::min(16u, s.direct_samples), std::max(s.direct_samples, 1u));
-    }
-    return plan;
 }
 
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds) {

@@ -47,11 +47,6 @@ float dark_level(const std::vector<MeasuredNoise>& pilot);
 /// Receivers that stand for a part of a tile in the pilot pass.
 Tile pilot_part(const Tile& tile, uint32_t part);
 
-/// Ray counts per tile that reach the noise target by the variance that the pilot found in its parts
-/// ([tiles][kPilotParts]), within the counts of settings (algorithms.md 10.3, 10.4).
-std::vector<RayPlan> plan_for_noise(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
-                                    const ajar_settings& settings, bool gathers);
-
 /// Halves ray counts until the rest of the bake fits into seconds; true if it had to.
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds);
 

@@ -13,8 +13,6 @@ namespace {
 constexpr uint32_t kPackets = kTileReceivers / kLanes;
 constexpr uint32_t kPool = 4;                  ///< packets whose noise speaks for each of them
 constexpr RayPlan kFirstRays = {64, 64};       ///< enough to measure noise by
-constexpr RayPlan kTrialRays = {256, 256};     ///< of the few places where the pilot looks twice
-constexpr uint32_t kTrialStep = 8;             ///< every n-th tile has one
 using Packets = std::array<uint8_t, kPackets>; ///< marks
 
 void mean_noise(const TileEstimate& t, uint32_t first, uint32_t end, MeasuredNoise& out) {
@@ -77,10 +75,11 @@ DirectGroups Baker::look_around(const Tile& tile, uint32_t seed) {
 
 NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
                             uint32_t seed) {
-    NoiseTrial trial{few, {}, 0.0f};
+    NoiseTrial trial{few, {}, 0.0f, 0.0f};
     const TileEstimate a = estimate(part, rays, groups, {}, hash_combine(seed, 1), false),
                        b = estimate(part, rays, groups, {}, hash_combine(seed, 2), false);
     mean_noise(a, 0, part.count, trial.many);
+    trial.strata_variance = trial.many.gather_variance + trial.many.direct_variance;
     for (uint32_t lane = 0; lane < part.count; ++lane) {
         const float d = luminance(a.irradiance(lane) - b.irradiance(lane));
         trial.twin_variance += 0.5f * d * d / static_cast<float>(part.count);

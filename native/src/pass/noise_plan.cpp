@@ -19,9 +19,29 @@ uint32_t round_up(float rays, uint32_t most) {
     return up <= most ? up : most < kStep ? std::bit_floor(most) : most / kStep * kStep;
 }
 
+uint32_t power_of_two(double v, uint32_t low, uint32_t high) {
+    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9)), low, high));
+}
+
 uint32_t left(uint32_t most, uint32_t done) { return most > done ? most - done : 0; }
 
 float variance(const MeasuredNoise& n) { return n.gather_variance + n.direct_variance; }
+
+/// Rays of both kinds.
+struct Wanted {
+    double gather, direct;
+};
+
+/// Rays that bring the strata estimate of a measured variance down to another. Both kinds of ray cost about
+/// the same; of all splits with one variance this has about the fewest.
+Wanted rays_for(const MeasuredNoise& noise, const RayPlan& measured, double wanted, const NoiseModel& model) {
+    const double gather = std::sqrt(double(measured.gather) * noise.gather_variance),
+                 direct = std::sqrt(double(measured.direct) * noise.direct_variance), sum = gather + direct;
+    if (!(sum > 0.0)) return {0.0, 0.0};
+    const double power = (gather * model.gather_power + direct * model.direct_power) / sum;
+    const double growth = std::pow(std::max(variance(noise) / wanted, 1.0), 1.0 / power - 1.0);
+    return {growth * gather * sum / wanted, growth * direct * sum / wanted};
+}
 
 /// Strata estimate of a place's variance with other rays than it was measured with.
 double variance_with(const MeasuredNoise& n, const RayPlan& measured, const RayPlan& rays, const NoiseModel& model) {
@@ -50,9 +70,9 @@ NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan&
             gather.push_back(std::log(t.few.gather_variance / t.many.gather_variance));
         if (t.many.direct_variance > 0.0f && t.few.direct_variance > 0.0f)
             direct.push_back(std::log(t.few.direct_variance / t.many.direct_variance));
-        const double level = double(t.many.level) * t.many.level, v = variance(t.many);
-        if (!(level > 0.0) || !(v > 1e-10 * level)) continue;
-        twin += t.twin_variance / level, strata += v / level;
+        const double level = double(t.many.level) * t.many.level;
+        if (!(level > 0.0) || !(t.strata_variance > 1e-10 * level)) continue;
+        twin += t.twin_variance / level, strata += t.strata_variance / level;
     }
     const auto growth = [](uint32_t a, uint32_t b) { return a > 0 ? float(b) / static_cast<float>(a) : 1.0f; };
     NoiseModel model;
@@ -68,21 +88,40 @@ RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const Nois
     const double allowed = double(goal.target) * (noise.level + goal.dark),
                  budget = allowed * allowed / goal.model.calibration, first = variance(noise);
     if (!(first > budget) || !std::isfinite(first)) return {};
-    // Averaged by inverse variance, both answers together reach the budget. Both kinds of ray cost about the
-    // same; of all splits with one variance this has fewest rays.
-    const double second = std::max(budget * first / (first - budget), 1e-30),
-                 gather = std::sqrt(double(done.gather) * noise.gather_variance),
-                 direct = std::sqrt(double(done.direct) * noise.direct_variance),
-                 power = (gather * goal.model.gather_power + direct * goal.model.direct_power) / (gather + direct);
-    const double growth = std::pow(first / second, 1.0 / power - 1.0);
-    const RayPlan more{goal.gathers ? round_up(static_cast<float>(growth * gather * (gather + direct) / second),
-                                               left(goal.most.gather, done.gather))
-                                    : 0,
-                       round_up(static_cast<float>(growth * direct * (gather + direct) / second),
-                                left(goal.most.direct, done.direct))};
+    // Averaged by inverse variance, both answers together reach the budget.
+    const Wanted wanted = rays_for(noise, done, std::max(budget * first / (first - budget), 1e-30), goal.model);
+    const RayPlan more{
+        goal.gathers ? round_up(static_cast<float>(wanted.gather), left(goal.most.gather, done.gather)) : 0,
+        round_up(static_cast<float>(wanted.direct), left(goal.most.direct, done.direct))};
     // Each answer stands on its own: emission is shared by both kinds of ray.
     if ((goal.gathers && more.gather == 0) || more.direct == 0) return {};
     return more;
+}
+
+std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
+                                const NoiseGoal& goal) {
+    std::vector<RayPlan> plan(pilot.size() / kPilotParts);
+    for (size_t i = 0; i < plan.size(); ++i) {
+        const MeasuredNoise* parts = &pilot[i * kPilotParts];
+        // Eight receivers are few: all parts of the tile pool with each.
+        const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
+            float sum = 0.0f;
+            for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
+            return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
+        };
+        double gather = 0.0, direct = 0.0;
+        for (size_t k = 0; k < kPilotParts; ++k) {
+            const MeasuredNoise noise{parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
+                                      pooled(k, &MeasuredNoise::direct_variance)};
+            const double allowed = double(goal.target) * (noise.level + goal.dark);
+            const Wanted wanted =
+                rays_for(noise, pilot_rays, allowed * allowed / goal.model.calibration + 1e-30, goal.model);
+            gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;
+        }
+        if (goal.gathers) plan[i].gather = power_of_two(gather, 64, std::max(goal.most.gather, 64u));
+        plan[i].direct = power_of_two(direct, std::min(16u, goal.most.direct), std::max(goal.most.direct, 1u));
+    }
+    return plan;
 }
 
 float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal) {

@@ -26,15 +26,24 @@ struct NoiseGoal {
 /// Noise of one place with few and with many rays, and what two answers with many say of it.
 struct NoiseTrial {
     MeasuredNoise few, many;
-    float twin_variance = 0.0f; ///< half the mean squared difference of the two
+    float strata_variance = 0.0f; ///< of all light with many rays
+    float twin_variance = 0.0f;   ///< of the same: half the mean squared difference of the two
 };
 
 /// Powers are typical ones; the calibration weighs all places alike, relative to their light.
 NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many);
 
+inline constexpr RayPlan kTrialRays = {256, 256}; ///< of the few places where a pilot looks twice
+inline constexpr uint32_t kTrialStep = 8;         ///< every n-th tile has one
+
 /// Rays that receivers still need after rays whose noise was measured; {0, 0}: none. Their answer is to be
 /// averaged with the first one, weighed by share_of_more() (algorithms.md 10.3: one decision).
 RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal);
+
+/// Ray counts per tile that reach the goal by what the pilot found in the tiles' parts ([tiles][kPilotParts]),
+/// where whole tiles get the same (algorithms.md 10.3, 10.4).
+std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
+                                const NoiseGoal& goal);
 
 /// Weight of the answer of the further rays, by inverse variance.
 float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal);

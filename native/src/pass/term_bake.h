@@ -27,7 +27,8 @@ private:
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
     ReceiverRows prune(const ReceiverRows& rows, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
-    MeasuredNoise pilot_noise(const Tile& tile, const RayPlan& rays, const DirectGroups& groups) const;
+    static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
+    NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups groups) const;
     DirectGroups look_around(const Tile& tile, uint32_t samples, uint32_t seed) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     float worth_at(const Ray& ray, const Hit& hit) const;

@@ -114,11 +114,10 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
 }
 
 /// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
-MeasuredNoise TermBaker::pilot_noise(const Tile& tile, const RayPlan& rays, const DirectGroups& groups) const {
-    const Estimate t = estimate(tile, rays, groups, hash_combine(settings_.seed, kSaltPilot));
-    const float share = 1.0f / static_cast<float>(tile.count);
+MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
+    const float share = 1.0f / static_cast<float>(lanes);
     MeasuredNoise p;
-    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+    for (uint32_t lane = 0; lane < lanes; ++lane) {
         p.level += std::max(0.0f, luminance(t.total(lane))) * share;
         p.gather_variance += static_cast<float>(t.gather_variance(t.gather.total_squares(lane))) * share;
         p.direct_variance += static_cast<float>(t.direct.total_squares(lane)) * share;
@@ -126,7 +125,7 @@ MeasuredNoise TermBaker::pilot_noise(const Tile& tile, const RayPlan& rays, cons
     for (size_t term = 0; term < t.terms.size(); ++term) {
         float level = 0.0f;
         double gather = 0.0, direct = 0.0;
-        for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        for (uint32_t lane = 0; lane < lanes; ++lane) {
             level += std::abs(luminance(t.irradiance(term, lane))) * share;
             if (const auto* b = t.gathered(term, lane)) gather += t.gather_variance(b->squares) * share;
             if (const auto* b = t.sampled(term, lane)) direct += std::max(b->squares, 0.0) * share;
@@ -139,6 +138,21 @@ MeasuredNoise TermBaker::pilot_noise(const Tile& tile, const RayPlan& rays, cons
     return p;
 }
 
+NoiseTrial TermBaker::try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
+                                DirectGroups groups) const {
+    const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
+    groups.allot(rays.direct, rays.direct);
+    const Estimate a = estimate(part, rays, groups, hash_combine(seed, 1)),
+                   b = estimate(part, rays, groups, hash_combine(seed, 2));
+    NoiseTrial trial{few, pilot_noise(a, part.count), 0.0f, 0.0f};
+    for (uint32_t lane = 0; lane < part.count; ++lane) {
+        const float share = 1.0f / static_cast<float>(part.count), d = luminance(a.total(lane) - b.total(lane));
+        trial.strata_variance += static_cast<float>(a.total_variance(lane)) * share;
+        trial.twin_variance += 0.5f * d * d * share;
+    }
+    return trial;
+}
+
 std::vector<RayPlan> TermBaker::plan_rays() {
     const size_t count = s_.receivers.tiles.size();
     std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
@@ -147,19 +161,30 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     std::vector<MeasuredNoise> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
-    const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
+    const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)},
+        large{gathers() ? std::min(kTrialRays.gather, settings_.samples) : 0,
+              std::min(kTrialRays.direct, settings_.direct_samples)};
+    std::vector<NoiseTrial> trials((count + kTrialStep - 1) / kTrialStep);
     pool_.for_each(count, progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
-        DirectGroups groups = look_around(tile, small.direct, hash_combine(settings_.seed, kSaltPilot));
+        const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
+        DirectGroups groups = look_around(tile, small.direct, seed);
         for (uint32_t k = 0; k < kPilotParts; ++k) {
             const Tile part = pilot_part(tile, k);
             groups.start_at(part.first - tile.first);
-            pilot[i * kPilotParts + k] = pilot_noise(part, small, groups);
+            pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
+            if (i % kTrialStep == 0 && k == i / kTrialStep % kPilotParts)
+                trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups);
         }
     });
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
-    if (settings_.noise_target > 0.0f) plan = plan_for_noise(pilot, small, settings_, gathers());
+    const NoiseGoal goal{settings_.noise_target,
+                         dark_level(pilot),
+                         {settings_.samples, settings_.direct_samples},
+                         gathers(),
+                         fit_noise_model(trials, small, large)};
+    if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
     if (timed)
         result_.time_limited =
             limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
