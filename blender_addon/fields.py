@@ -133,6 +133,16 @@ ENGINE_FIELDS = (
         "Final rays that aim at each door in sight, as a share of those over the hemisphere",
         "Door rays",
     ),
+    Field(
+        "check_points",
+        "int",
+        256,
+        0,
+        1048576,
+        "texels",
+        "Random texels at which brute force checks the finished bake; 0: no check",
+        "Self-check",
+    ),
 )
 
 # Fields of ajar_layout_settings, in the order of the struct.

@@ -252,6 +252,7 @@ def summarize(report, status):
         "seconds": time.monotonic() - status.started,
         "rays": report.get("rays", {}).get("total", 0),
         "error": {name: error[name] for name in _SHOWN_ERRORS if name in error},
+        "self_check": report.get("self_check", {}),
         "time_limited": bool(report.get("time_limited")),
         "warnings": [list(warning) for warning in status.warnings],
     }

@@ -175,6 +175,7 @@ class Settings(c.Structure):
         ("combinations", u32),
         ("term_threshold", f32),
         ("door_rays", f32),
+        ("check_points", u32),
     ]
 
 

@@ -62,6 +62,11 @@ def draw_last_bake(layout, context):
         column.label(text="Stopped by the time limit", icon="TIME")
     for line in _error_lines(bake.get("error", {})):
         column.label(text=line)
+    check = bake.get("self_check")
+    if check:
+        column.label(
+            text=f"Brute force agrees: {check['ratio']:.1%} ± {check['ratio_error']:.1%} of its light"
+        )
     warnings = bake.get("warnings", [])
     if warnings:
         layout.label(text=f"{len(warnings)} warnings", icon="ERROR")

@@ -272,6 +272,7 @@ typedef struct ajar_settings {
                               of the term's mean indirect light there; 0 keeps all */
     float door_rays;       /* final rays that aim at each door in sight, as a share of those over the
                               hemisphere; 0..1, 0 = none */
+    uint32_t check_points; /* random texels at which brute force checks the finished bake; 0 = none, the default */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

@@ -30,6 +30,9 @@ void Job::bake(Progress& progress) {
                                           : TermBaker(gather, settings_, pool, progress).run();
     progress.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
+    if (settings_.check_points == 0) return;
+    output_.check = check_bake(scene, tracer, output_.pages, output_.bake.bounce_means, settings_, pool, progress);
+    for (Warning& w : check_warnings(output_.check, scene.name)) output_.warnings.push_back(std::move(w));
 }
 
 const JobOutput& Job::output() const {

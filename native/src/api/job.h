@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "api/self_check.h"
 #include "api/task.h"
-#include "package/baked_pages.h"
 
 namespace ajar {
 
@@ -18,6 +18,7 @@ struct JobOutput {
     std::vector<Warning> warnings;
     uint32_t emissive_triangles = 0;
     bool sky_sampled = false;
+    SelfCheck check;
 };
 
 /// One bake on its own thread: runs the stages in order and keeps what came out.

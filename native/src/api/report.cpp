@@ -22,6 +22,7 @@ json settings_json(const ajar_settings& s) {
             {"combinations", s.combinations},
             {"term_threshold", s.term_threshold},
             {"door_rays", s.door_rays},
+            {"check_points", s.check_points},
             {"seed", s.seed},
             {"threads", s.threads},
             {"stitch_seams", s.stitch_seams != 0},
@@ -142,6 +143,12 @@ json receivers_json(const JobOutput& o) {
             {"range_clamped", o.pages.clamped_texels}};
 }
 
+json check_json(const SelfCheck& c) {
+    return {{"points", c.points},           {"ratio", c.ratio},
+            {"ratio_error", c.ratio_error}, {"far_share", c.far_share},
+            {"bounce_gain", c.bounce_gain}, {"seconds", c.seconds}};
+}
+
 uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -155,7 +162,7 @@ std::string make_report(const Job& job) {
     json warnings = json::array();
     for (const Warning& w : o.warnings) warnings.push_back({{"culprit", w.culprit}, {"text", w.text}});
     const double seconds = std::max(job.seconds(), 1e-9);
-    const json report = {
+    json report = {
         {"version", 1},
         {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT},
         {"name", job.scene().name},
@@ -172,6 +179,7 @@ std::string make_report(const Job& job) {
         {"terms", terms_json(job.scene(), o.pages)},
         {"warnings", warnings},
         {"memory_bytes", peak_memory()}};
+    if (job.settings().check_points != 0) report["self_check"] = check_json(o.check);
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 

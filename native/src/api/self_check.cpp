@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "api/self_check.h"
+
+#include <cstdio>
+
+#include "reference/reference.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint32_t kBatches = 8;      ///< of paths per point
+constexpr uint32_t kPointSeed = 7919; ///< differs from what chooses the paths of accuracy measurements
+constexpr double kSigmas = 4.0;
+constexpr double kFarOff = 0.1;    ///< of a texel's light
+constexpr double kMostBias = 0.05; ///< of all light
+constexpr double kMostFar = 0.1;   ///< share of points
+constexpr double kMostGain = 1.0;
+
+/// Light of all terms with every weight at 1.
+Vec3 all_on(const BakedPages& pages, uint32_t texel) {
+    Vec3 sum = pages.irradiance[texel];
+    for (const BakedTerm& t : pages.terms) {
+        const auto at = std::lower_bound(t.texel.begin(), t.texel.end(), texel);
+        if (at != t.texel.end() && *at == texel) sum += t.irradiance[static_cast<size_t>(at - t.texel.begin())];
+    }
+    return sum;
+}
+
+std::string percent(double share) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
+    return text;
+}
+
+} // namespace
+
+void compare_points(const std::vector<CheckPoint>& points, SelfCheck& check) {
+    double baked = 0.0, reference = 0.0, variance = 0.0;
+    size_t far = 0;
+    for (const CheckPoint& p : points) {
+        const double both = double(p.baked_error) * p.baked_error + double(p.reference_error) * p.reference_error;
+        baked += p.baked, reference += p.reference, variance += both;
+        const double apart = std::abs(double(p.baked) - p.reference);
+        far += apart > kFarOff * p.reference && apart > kSigmas * std::sqrt(both);
+    }
+    check.points = static_cast<uint32_t>(points.size());
+    if (points.empty() || !(reference > 0.0)) return;
+    check.ratio = baked / reference;
+    check.ratio_error = std::sqrt(variance) / reference;
+    check.far_share = static_cast<double>(far) / static_cast<double>(points.size());
+}
+
+SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPages& pages,
+                     const std::vector<double>& bounce_means, const ajar_settings& settings, ThreadPool& pool,
+                     Progress& progress) {
+    SelfCheck check;
+    const double start = progress.elapsed();
+    ReferenceSettings s;
+    s.points = settings.check_points;
+    s.bounces = settings.bounces;
+    s.batches = kBatches;
+    s.seed = settings.seed;
+    s.point_seed = kPointSeed;
+    s.by_texel = s.whole_texels = true;
+    s.weights.assign(scene.elements.size(), 1.0f);
+    std::vector<CheckPoint> points;
+    for (const ReferenceValue& v : trace_reference(scene, tracer, s, pool, progress).values) {
+        const Page& page = scene.pages[v.point.page];
+        const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
+        if (pages.validity[texel] != 1.0f) continue;
+        points.push_back(
+            {luminance(all_on(pages, texel)), pages.standard_error[texel], luminance(v.irradiance), v.standard_error});
+    }
+    compare_points(points, check);
+    // The first step may grow: direct light can fall where no lightmap is.
+    for (size_t b = 2; b < bounce_means.size(); ++b)
+        if (bounce_means[b - 1] > 0.0)
+            check.bounce_gain = std::max(check.bounce_gain, bounce_means[b] / bounce_means[b - 1]);
+    check.seconds = progress.elapsed() - start;
+    return check;
+}
+
+std::vector<Warning> check_warnings(const SelfCheck& c, const std::string& scene_name) {
+    std::vector<Warning> out;
+    if (std::abs(c.ratio - 1.0) > kMostBias && std::abs(c.ratio - 1.0) > kSigmas * c.ratio_error)
+        out.push_back({scene_name, "self-check: the baked light is " + percent(c.ratio) +
+                                       " of what brute force finds at random texels; bake with combinations "
+                                       "or a finer preset, or measure with `./dev accuracy`"});
+    if (c.far_share > kMostFar)
+        out.push_back({scene_name, "self-check: " + percent(c.far_share) +
+                                       " of random texels are more than a tenth off what brute force finds; more "
+                                       "texels per metre show finer shadows"});
+    if (c.bounce_gain > kMostGain)
+        out.push_back({scene_name,
+                       "self-check: light grows from bounce to bounce; look for materials brighter "
+                       "than white"});
+    return out;
+}
+
+} // namespace ajar

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "accel/embree_scene.h"
+#include "package/baked_pages.h"
+
+namespace ajar {
+
+/// What brute force said of a finished bake at random texels, with every element at weight 1: base and all
+/// terms together.
+struct SelfCheck {
+    uint32_t points = 0;
+    double ratio = 1.0;       ///< light of the bake over that of the reference, both summed
+    double ratio_error = 0.0; ///< standard error of it
+    double far_share = 0.0;   ///< of the points: further apart than a tenth and 4 standard errors
+    double bounce_gain = 0.0; ///< most light of a bounce over that of the one before; light that grows is wrong
+    double seconds = 0.0;
+};
+
+/// Traces the reference at settings.check_points texels and compares. Throws Cancelled.
+SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPages& pages,
+                     const std::vector<double>& bounce_means, const ajar_settings& settings, ThreadPool& pool,
+                     Progress& progress);
+
+/// One texel of both answers: luminance and its standard error, W/m^2.
+struct CheckPoint {
+    float baked, baked_error, reference, reference_error;
+};
+
+/// Compares; bounce_gain and seconds are left alone.
+void compare_points(const std::vector<CheckPoint>& points, SelfCheck& check);
+
+/// What a check that is out of bounds tells the artist.
+std::vector<Warning> check_warnings(const SelfCheck& check, const std::string& scene_name);
+
+} // namespace ajar
