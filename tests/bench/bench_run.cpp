@@ -53,6 +53,7 @@ int run(int argc, char** argv, ajar_scene level, const char* name) {
         add_emitters(*built.emplace_back(
             std::make_unique<BenchScene>("room_" + std::to_string(kManyLamps) + "_lamps", room(kManyLamps))));
         add_encode();
+        add_doors();
     }
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -15,5 +15,7 @@ void add_stitch(const BenchScene& scene);
 /// Whole bakes with all stages but writing files; threads 0 for all.
 void add_bake(const BenchScene& scene, uint32_t threads);
 void add_encode();
+/// A small door far from the receivers, with rays aimed at it and without.
+void add_doors();
 
 } // namespace bench

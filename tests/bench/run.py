@@ -100,6 +100,7 @@ def entry(row):
         "ratio",
         "further_rays",
         "digest",
+        "error",
         "items_per_second",
         "texels",
     ):
@@ -120,10 +121,20 @@ def describe(entries):
             )
         elif "rays_per_second" in e:
             yield f"{e['name']:36} {e['rays_per_second'] / 1e6:8.2f} Mrays/s   {e['seconds']:.2f} s, {e['texels']:.0f} texels"
+        elif "error" in e:
+            yield f"{e['name']:36} {e['seconds'] * 1e3:8.1f} ms   relative error {e['error']:.3f}"
         elif e['name'].startswith("runtime/"):
             yield f"{e['name']:36} {e['seconds'] * 1e3:8.3f} ms   {e['ns_per_item']:.2f} ns each"
         else:
             yield f"{e['name']:36} {e['ns_per_item']:8.1f} ns each"
+
+
+def compare_doors(entries):
+    """What aiming at doors gains at equal time: error falls with the square root of time."""
+    both = {e['name'].split("/")[-1]: e for e in entries if e['name'].startswith("doors/")}
+    if len(both) == 2:
+        plain, aimed = (both[name]['error'] * both[name]['seconds'] ** 0.5 for name in ("unguided", "guided"))
+        yield f"{'doors: error at equal time':36} {plain / aimed:8.1f} times lower with guiding (aim 5)"
 
 
 def git_state():
@@ -182,7 +193,7 @@ def main(arguments):
         ],
     )
     entries = medians(report)
-    for line in describe(entries):
+    for line in (*describe(entries), *compare_doors(entries)):
         print(line)
     print(f"{'peak memory':36} {peak / 1e6:8.0f} MB")
     file = OUT / "bench.json"
