@@ -83,14 +83,7 @@ double thin_wall(const Variant& v) {
 
 double slivers(const Variant& v) {
     Stage s(v);
-    kit::MeshData strip;
-    float x = -1.0f;
-    for (int i = 0; x < 1.0f; ++i) { // quads of width 1e-6 between ordinary ones
-        const float next = i % 2 ? std::min(x + 0.19f, 1.0f) : x + 1e-6f;
-        strip.quad({x, -1, 0}, {next, -1, 0}, {next, 1, 0}, {x, 1, 0}, {0.5f * (x + 1), 0}, {0.5f * (next + 1), 1});
-        x = next;
-    }
-    const uint32_t page = s.object(strip, s.scene.diffuse({0.8f, 0.8f, 0.8f}), 16);
+    const uint32_t page = s.object(kit::sliver_strip(), s.scene.diffuse({0.8f, 0.8f, 0.8f}), 16);
     s.sky(1.0);
     s.scene.commit();
     return worst(s.irradiance(kit::Bake(s.scene, s.settings(1, 128)), page), pi);

@@ -74,6 +74,17 @@ void subdivide(Float3 a, Float3 b, Float3 c, int n, float radius, std::vector<st
 
 } // namespace
 
+MeshData sliver_strip() {
+    MeshData strip;
+    float x = -1.0f;
+    for (int i = 0; x < 1.0f; ++i) {
+        const float next = i % 2 ? std::min(x + 0.19f, 1.0f) : x + 1e-6f;
+        strip.quad({x, -1, 0}, {next, -1, 0}, {next, 1, 0}, {x, 1, 0}, {0.5f * (x + 1), 0}, {0.5f * (next + 1), 1});
+        x = next;
+    }
+    return strip;
+}
+
 MeshData sphere_inside(float radius, int subdivisions) {
     std::vector<std::array<Float3, 3>> triangles;
     const float r = radius;

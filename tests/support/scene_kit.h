@@ -30,6 +30,8 @@ struct MeshData {
 MeshData box(Float3 low, Float3 high, bool inside, float margin = 0.02f);
 /// Horizontal square of edge size at height z, facing up (or down), UVs over [0,1].
 MeshData plane(float size, float z, bool up = true);
+/// Square of edge 2 m at height 0, facing up, of strips of which every other is 1e-6 m wide; UVs over [0,1].
+MeshData sliver_strip();
 /// Octahedron subdivided n times and projected to the sphere, seen from inside; UVs: one cell per triangle.
 MeshData sphere_inside(float radius, int subdivisions);
 

@@ -63,6 +63,34 @@ float dark_level(const std::vector<MeasuredNoise>& pilot) {
     return 0.01f * levels[levels.size() / 2];
 }
 
+GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
+                            uint32_t seed) {
+    GatherOptions o;
+    o.samples = plan.gather;
+    o.share = kFinalShare;
+    o.emission = true;
+    o.unmapped_direct = settings.bounces > 0;
+    o.direct = &groups;
+    o.seed = seed;
+    return o;
+}
+
+Vec2 compare_twins(float a, float b, double standard_error) {
+    const float level = 0.5f * (a + b);
+    if (!(level > 0.0f)) return Vec2(0.0f);
+    const double se = standard_error / level;
+    if (se < 1e-5) return Vec2(0.0f);
+    const float d = (a - b) / level;
+    return {0.5f * d * d, static_cast<float>(se * se)};
+}
+
+float error_calibration(const std::vector<Vec2>& parts) {
+    double twin = 0.0, strata = 0.0;
+    for (const Vec2& p : parts) twin += p.x, strata += p.y;
+    if (parts.size() < 8 || !(strata > 0.0)) return 1.0f;
+    return static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+}
+
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds) {
     const auto cost = [&] {
         double rays = 0.0;

@@ -47,6 +47,17 @@ float dark_level(const std::vector<MeasuredNoise>& pilot);
 /// Receivers that stand for a part of a tile in the pilot pass.
 Tile pilot_part(const Tile& tile, uint32_t part);
 
+/// Final gather rays of a plan that share emission with the emitter samples of groups.
+GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
+                            uint32_t seed);
+
+/// Half the squared difference of two answers for a receiver, and what the strata say it should be, both over the
+/// squared level; 0, 0 where they say nothing of each other.
+Vec2 compare_twins(float a, float b, double standard_error);
+
+/// Factor of the strata's standard errors, from the sums of compare_twins() of a bake; 1 if they are too few.
+float error_calibration(const std::vector<Vec2>& parts);
+
 /// Halves ray counts until the rest of the bake fits into seconds; true if it had to.
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds);
 

@@ -51,14 +51,8 @@ TileEstimate Baker::estimate(const Tile& tile, RayPlan plan, DirectGroups& group
     uint64_t rays = sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(plan.gather), kFinalShare}, seed,
                                   packets, *t.direct);
     if (plan.gather != 0) {
-        GatherOptions o;
-        o.samples = plan.gather;
-        o.share = kFinalShare;
-        o.emission = true;
-        o.unmapped_direct = settings_.bounces > 0;
-        o.direct = &groups;
+        GatherOptions o = final_options(plan, settings_, groups, seed);
         o.packets = packets;
-        o.seed = seed;
         rays += gather_tile(scene, tile, o, settings_.bounces > 0 ? radiance_.data() : nullptr, *t.gather);
     }
     progress_.add_rays(rays);
@@ -102,9 +96,7 @@ void Baker::plan_rays() {
     std::vector<MeasuredNoise> pilot(tiles.size() * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
-    const RayPlan small{goal_.gathers ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)};
-    const RayPlan large{std::min(kTrialRays.gather, first_.gather > 0 ? settings_.samples : 0),
-                        std::min(kTrialRays.direct, settings_.direct_samples)};
+    const RayPlan small = pilot_rays(goal_.most, goal_.gathers), large = trial_rays(goal_.most, goal_.gathers);
     std::vector<NoiseTrial> trials((tiles.size() + kTrialStep - 1) / kTrialStep);
     pool_.for_each(tiles.size(), progress_, [&](size_t i) {
         const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
@@ -113,7 +105,7 @@ void Baker::plan_rays() {
             const Tile part = pilot_part(tiles[i], k);
             groups.start_at(part.first - tiles[i].first);
             mean_noise(estimate(part, small, groups, {}, seed, false), 0, part.count, pilot[i * kPilotParts + k]);
-            if (i % kTrialStep == 0 && k == i / kTrialStep % kPilotParts)
+            if (is_trial(i, k))
                 trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups, seed);
         }
     });
@@ -191,8 +183,7 @@ void Baker::calibrate_error() {
         count, progress_,
         [&](size_t k) {
             const size_t i = k * kCalibrationStep;
-            const Tile& whole = s_.receivers.tiles[i];
-            const Tile tile{whole.first, std::min(kPilotReceivers, whole.count)};
+            const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
             DirectGroups groups = look_around(tile, seed);
             TileLight twin;
@@ -202,19 +193,12 @@ void Baker::calibrate_error() {
                          further_[i].share);
             for (uint32_t lane = 0; lane < tile.count; ++lane) {
                 const size_t r = tile.first + lane;
-                const float a = luminance(result_.irradiance[r]), b = luminance(twin.irradiance[lane]);
-                const float level = 0.5f * (a + b);
-                if (!(level > 0.0f)) continue;
-                const float se = result_.standard_error[r] / level, d = (a - b) / level;
-                if (se < 1e-5f) continue;
-                parts[k] += Vec2(0.5f * d * d, se * se);
+                parts[k] += compare_twins(luminance(result_.irradiance[r]), luminance(twin.irradiance[lane]),
+                                          result_.standard_error[r]);
             }
         },
         false);
-    double twin = 0.0, strata = 0.0;
-    for (const Vec2& p : parts) twin += p.x, strata += p.y;
-    if (count < 8 || !(strata > 0.0)) return;
-    result_.error_calibration = static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+    result_.error_calibration = error_calibration(parts);
     for (float& e : result_.standard_error) e *= result_.error_calibration;
 }
 

@@ -8,6 +8,7 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kLeastMore = 16;
+constexpr uint32_t kTrialRays = 256; ///< of each kind
 constexpr size_t kLeastTrials = 8;
 constexpr float kMostPower = 1.6f;
 constexpr uint32_t kStep = 256; ///< counts above it are multiples of it, others powers of two
@@ -61,6 +62,16 @@ float typical_power(std::vector<float> falls, float growth) {
 }
 
 } // namespace
+
+RayPlan pilot_rays(const RayPlan& most, bool gathers) {
+    return {gathers ? kPilotRays : 0, std::min(most.direct, kPilotRays)};
+}
+
+RayPlan trial_rays(const RayPlan& most, bool gathers) {
+    return {gathers ? std::min(kTrialRays, most.gather) : 0, std::min(kTrialRays, most.direct)};
+}
+
+bool is_trial(size_t tile, uint32_t part) { return tile % kTrialStep == 0 && part == tile / kTrialStep % kPilotParts; }
 
 NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many) {
     std::vector<float> gather, direct;

@@ -33,8 +33,13 @@ struct NoiseTrial {
 /// Powers are typical ones; the calibration weighs all places alike, relative to their light.
 NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many);
 
-inline constexpr RayPlan kTrialRays = {256, 256}; ///< of the few places where a pilot looks twice
-inline constexpr uint32_t kTrialStep = 8;         ///< every n-th tile has one
+inline constexpr uint32_t kTrialStep = 8; ///< every n-th tile has a place where the pilot looks twice
+
+/// Rays of the pilot (few) and of the places where it looks twice (many), within the most that receivers may have.
+RayPlan pilot_rays(const RayPlan& most, bool gathers);
+RayPlan trial_rays(const RayPlan& most, bool gathers);
+/// The pilot looks twice at this part of a tile.
+bool is_trial(size_t tile, uint32_t part);
 
 /// Rays that receivers still need after rays whose noise was measured; {0, 0}: none. Their answer is to be
 /// averaged with the first one, weighed by share_of_more() (algorithms.md 10.3: one decision).

@@ -98,14 +98,8 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
                           table_, limits_, t.direct);
     if (plan.gather != 0) {
-        GatherOptions o;
-        o.samples = plan.gather;
-        o.share = kFinalShare;
-        o.emission = true;
-        o.unmapped_direct = settings_.bounces > 0;
-        o.direct = &groups;
+        GatherOptions o = final_options(plan, settings_, groups, seed);
         o.aims = aimed;
-        o.seed = seed;
         rays += gather_tile(scene, tile, o, rows, table_, limits_, t.gather);
     }
     progress_.add_rays(rays);
@@ -161,9 +155,8 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     std::vector<MeasuredNoise> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
-    const RayPlan small{gathers() ? kPilotRays : 0, std::min(settings_.direct_samples, kPilotRays)},
-        large{gathers() ? std::min(kTrialRays.gather, settings_.samples) : 0,
-              std::min(kTrialRays.direct, settings_.direct_samples)};
+    const RayPlan most{settings_.samples, settings_.direct_samples}, small = pilot_rays(most, gathers()),
+                                                                     large = trial_rays(most, gathers());
     std::vector<NoiseTrial> trials((count + kTrialStep - 1) / kTrialStep);
     pool_.for_each(count, progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
@@ -173,16 +166,12 @@ std::vector<RayPlan> TermBaker::plan_rays() {
             const Tile part = pilot_part(tile, k);
             groups.start_at(part.first - tile.first);
             pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
-            if (i % kTrialStep == 0 && k == i / kTrialStep % kPilotParts)
-                trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups);
+            if (is_trial(i, k)) trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups);
         }
     });
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
-    const NoiseGoal goal{settings_.noise_target,
-                         dark_level(pilot),
-                         {settings_.samples, settings_.direct_samples},
-                         gathers(),
+    const NoiseGoal goal{settings_.noise_target, dark_level(pilot), most, gathers(),
                          fit_noise_model(trials, small, large)};
     if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
     if (timed)

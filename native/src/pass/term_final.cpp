@@ -96,23 +96,15 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
         count, progress_,
         [&](size_t k) {
             const size_t i = k * kCalibrationStep;
-            const Tile tile{s_.receivers.tiles[i].first, std::min(kPilotReceivers, s_.receivers.tiles[i].count)};
+            const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
             const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)),
                            b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
-            for (uint32_t lane = 0; lane < tile.count; ++lane) {
-                const float la = luminance(a.total(lane)), lb = luminance(b.total(lane)), level = 0.5f * (la + lb);
-                if (!(level > 0.0f)) continue;
-                const double se = std::sqrt(a.total_variance(lane)) / level;
-                if (se < 1e-5) continue;
-                const float d = (la - lb) / level;
-                parts[k] += Vec2(0.5f * d * d, static_cast<float>(se * se));
-            }
+            for (uint32_t lane = 0; lane < tile.count; ++lane)
+                parts[k] += compare_twins(luminance(a.total(lane)), luminance(b.total(lane)),
+                                          std::sqrt(a.total_variance(lane)));
         },
         false);
-    double twin = 0.0, strata = 0.0;
-    for (const Vec2& p : parts) twin += p.x, strata += p.y;
-    if (count < 8 || !(strata > 0.0)) return;
-    result_.error_calibration = static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
+    result_.error_calibration = error_calibration(parts);
     for (float& e : result_.standard_error) e *= result_.error_calibration;
     for (TermLight& l : result_.terms.light) l.standard_error *= result_.error_calibration;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling/direct_groups.h"
+#include "transport/packet_choice.h"
 #include "transport/surface_table.h"
 #include "transport/term_sums.h"
 #include "transport/tile_aims.h"
@@ -19,17 +20,9 @@ struct GatherScene {
     const Progress& progress;
 };
 
-/// Some of the packets of a tile, kLanes receivers each; all by default.
-struct PacketChoice {
-    const uint8_t* chosen = nullptr; ///< per packet
-
-    /// The packet that begins at a receiver of the tile is one of them.
-    bool has(uint32_t local) const { return chosen == nullptr || chosen[local / kLanes] != 0; }
-};
-
 /// What one gather collects.
 struct GatherOptions {
-    uint32_t samples = 64;                ///< rays per receiver, a power of two
+    uint32_t samples = 64;                ///< rays per receiver: a power of two, or a multiple of 256
     float share = 1.0f;                   ///< cosine share of the ray density; 1 for irradiance alone
     bool emission = false;                ///< count what emissive surfaces and the sky send directly
     bool unmapped_direct = false;         ///< surfaces without lightmap reflect their direct light too

@@ -49,7 +49,7 @@ struct Gatherer {
         const uint32_t count = std::min(o.samples, StratifiedBatch::kRays);
         for (uint32_t begin = 0; begin < o.samples; begin += count) {
             g.progress.check_cancel();
-            tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays, o.packets.chosen);
+            tile_rays.begin(o.first_sample + begin, count, begin / StratifiedBatch::kRays, o.packets);
             // Strata of all receivers together keep rays close, those of few receivers their many sums.
             const uint32_t together = Sink::kTogether < count ? Sink::kTogether : count;
             for (uint32_t part = 0; part < count; part += together)

@@ -7,6 +7,7 @@
 #include "accel/ray.h"
 #include "base/owen_sobol.h"
 #include "receiver/lightmap.h"
+#include "transport/packet_choice.h"
 
 namespace ajar {
 
@@ -19,9 +20,9 @@ public:
     /// count: a power of two, at most kRays. A block of count samples holds one point per cell of a
     /// grid; cells are visited in Morton order, so that neighbours in the order are neighbours on the
     /// hemisphere.
-    /// packets: marks those that are filled; null: all.
+    /// packets: those that are filled.
     void fill(const LightmapReceivers& receivers, const Tile& tile, uint32_t first_sample, uint32_t count,
-              uint32_t seed, const uint8_t* packets) {
+              uint32_t seed, PacketChoice packets) {
         row_ = count + 2; // powers of two apart, all rows would want the same lines of the cache
         x_.resize(size_t{row_} * kTileReceivers);
         y_.resize(size_t{row_} * kTileReceivers);
@@ -29,7 +30,7 @@ public:
         const auto nx = static_cast<float>(1u << ((log2 + 1) / 2)), ny = static_cast<float>(1u << (log2 / 2));
         const uint32_t extra = log2 & 1;
         for (uint32_t i = 0; i < kTileReceivers; ++i) {
-            if (packets != nullptr && packets[i / kLanes] == 0) continue;
+            if (!packets.has(i)) continue;
             const uint32_t h = hash_combine(seed, i < tile.count ? receivers.texel[tile.first + i] : 0u);
             float ux[kRays], uy[kRays];
             uint32_t cell[kRays];

@@ -20,9 +20,9 @@ public:
         }
     }
 
-    /// Prepares samples first_sample to first_sample + count of the receivers' sequences, for the packets
-    /// that are marked; null: all.
-    void begin(uint32_t first_sample, uint32_t count, uint32_t block, const uint8_t* packets) {
+    /// Prepares samples first_sample to first_sample + count of the receivers' sequences, for some
+    /// packets.
+    void begin(uint32_t first_sample, uint32_t count, uint32_t block, PacketChoice packets) {
         batch_.fill(receivers_, tile_, first_sample, count, seed_, packets);
         // Neighbouring strata visit all positions, and so does each stratum over the batches, in an
         // order that does not follow the sequence.
