@@ -3,12 +3,12 @@
 
 #include <limits>
 
+#include "base/lanes.h"
 #include "base/math.h"
 #include "scene/snapshot.h"
 
 namespace ajar {
 
-inline constexpr uint32_t kLanes = 8; ///< rays per packet
 inline constexpr uint32_t kMiss = 0xffffffffu;
 
 /// Eight rays and their hits, laid out as the tracer wants them. Set origin, direction, tnear,

@@ -29,17 +29,21 @@ void EmitterSet::weigh_for_anywhere() {
 // them by its importance here. Constant cost, unlike a loop over all emitters.
 uint32_t EmitterSet::pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, float& chance) const {
     if (anywhere_.empty()) return kNone;
-    uint32_t chosen = kNone;
-    float total = 0.0f, target = 0.0f;
+    // All candidates first: they come from all over memory.
+    uint32_t candidate[kTries];
+    for (uint32_t i = 0; i < kTries; ++i)
+        candidate[i] = anywhere_.pick((static_cast<float>(i) + unit_float(hash_combine(seed, i))) / kTries);
+    float here[kTries], running[kTries], total = 0.0f;
     for (uint32_t i = 0; i < kTries; ++i) {
-        const uint32_t e = anywhere_.pick(owen_sobol(i, seed).x);
-        const float here = importance(e, p, n), weight = here / anywhere_.chance(e);
-        total += weight;
-        // Strata must not tie one decision to the next, or some candidates win too often.
-        if (weight > 0.0f && unit_float(hash_combine(seed, i)) * total < weight) chosen = e, target = here;
+        here[i] = importance(candidate[i], p, n);
+        running[i] = total += here[i] / anywhere_.chance(candidate[i]);
     }
-    chance = chosen != kNone ? target * static_cast<float>(kTries) / total : 0.0f;
-    return chosen;
+    if (!(total > 0.0f)) return kNone;
+    const float target = unit_float(hash_combine(seed, kTries)) * total;
+    uint32_t i = 0;
+    while (i + 1 < kTries && running[i] <= target) ++i;
+    chance = here[i] * static_cast<float>(kTries) / total;
+    return here[i] > 0.0f ? candidate[i] : kNone;
 }
 
 } // namespace ajar

@@ -9,9 +9,9 @@ namespace ajar {
 namespace {
 
 constexpr float kTexelsPerCell = 2.0f; ///< along an edge
-constexpr uint32_t kMostEdge = 64;
-constexpr double kMostCells = 4e6;  ///< of the scene
-constexpr float kEvenShare = 0.05f; ///< of the samples ignore the weights: they may have missed thin details
+constexpr uint32_t kMostEdge = 64;     ///< the cells of a grid count in 16 bits
+constexpr double kMostCells = 4e6;     ///< of the scene
+constexpr float kEvenShare = 0.05f;    ///< of the samples ignore the weights: they may have missed thin details
 constexpr uint32_t kPlainSamples = 16;
 
 /// Cell (x, y) of a triangle cut into edge^2 equal ones: the lower triangle at its corner, or the upper one
@@ -92,7 +92,18 @@ EmissionCells::EmissionCells(const Snapshot& scene, const std::vector<uint32_t>&
             running += (1.0 - kEvenShare) * c / sum + kEvenShare / static_cast<double>(cells[i].size());
             running_.push_back(static_cast<float>(running));
         }
+        add_guide(grid);
         cells[i] = {};
+    }
+}
+
+void EmissionCells::add_guide(const Grid& grid) {
+    const uint32_t count = grid.edge * grid.edge;
+    uint32_t cell = 0;
+    for (uint32_t part = 0; part < count; ++part) {
+        const float begin = static_cast<float>(part) / static_cast<float>(count);
+        while (cell + 1 < count && running_[grid.first + cell] <= begin) ++cell;
+        guide_.push_back(static_cast<uint16_t>(cell));
     }
 }
 
@@ -100,13 +111,10 @@ Vec2 EmissionCells::sample(uint32_t triangle, Vec2 u, float& density) const {
     const Grid& grid = grids_[slot_[triangle]];
     density = 1.0f;
     if (grid.edge == 1) return sample_triangle(u);
-    const auto begin = running_.begin() + grid.first;
-    const uint32_t count = grid.edge * grid.edge;
-    const auto cell =
-        static_cast<uint32_t>(std::min<ptrdiff_t>(std::upper_bound(begin, begin + count, u.x) - begin, count - 1));
+    const uint32_t cell = cell_of(grid, u.x);
     const float share = chance(grid, cell);
-    u.x = std::clamp((u.x - (begin[cell] - share)) / share, 0.0f, 0x1.fffffep-1f);
-    density = share * static_cast<float>(count);
+    u.x = std::clamp((u.x - (running_[grid.first + cell] - share)) / share, 0.0f, 0x1.fffffep-1f);
+    density = share * static_cast<float>(grid.edge * grid.edge);
     return Cell::of(grid.edge, cell).place(grid.edge, sample_triangle(u));
 }
 

@@ -25,7 +25,7 @@ public:
 private:
     struct Grid {
         uint32_t edge = 1;  ///< cells along an edge; edge^2 cells
-        uint32_t first = 0; ///< into running_
+        uint32_t first = 0; ///< into running_ and guide_
         float mean = 0.0f;
     };
     /// Chance of a cell of a grid.
@@ -33,9 +33,20 @@ private:
         return running_[grid.first + cell] - (cell > 0 ? running_[grid.first + cell - 1] : 0.0f);
     }
 
+    /// First cell whose running sum exceeds u.
+    uint32_t cell_of(const Grid& grid, float u) const {
+        const uint32_t count = grid.edge * grid.edge;
+        const auto part = std::min(static_cast<uint32_t>(u * static_cast<float>(count)), count - 1);
+        uint32_t cell = guide_[grid.first + part];
+        while (cell + 1 < count && running_[grid.first + cell] <= u) ++cell;
+        return cell;
+    }
+    void add_guide(const Grid& grid);
+
     std::vector<uint32_t> slot_; ///< per triangle of the scene
     std::vector<Grid> grids_;
-    std::vector<float> running_; ///< running sums of the chances of the cells of grids with more than one
+    std::vector<float> running_;  ///< running sums of the chances of the cells of grids with more than one
+    std::vector<uint16_t> guide_; ///< for each of as many equal parts of [0, 1): cell_of its begin
 };
 
 } // namespace ajar

@@ -144,8 +144,7 @@ void EmitterSet::add_cluster(uint32_t first, uint32_t count) {
 float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const {
     const Vec3 to = c.center - p;
     const float distance2 = glm::dot(to, to), distance = std::max(std::sqrt(distance2), 1e-6f);
-    const float cosine = std::min(1.0f, (glm::dot(to, n) + c.radius) / distance);
-    if (cosine <= 0.0f) return 0.0f;
+    const float cosine = std::clamp((glm::dot(to, n) + c.radius) / distance, 0.0f, 1.0f);
     float facing = 1.0f;
     if (c.bend < kFlatBend) {
         const float toward = -glm::dot(to, c.axis);

@@ -10,8 +10,10 @@ inline constexpr float kSh0 = 0.28209479f, kSh1 = 0.48860251f, kSh2 = 1.09254843
                        kSh4 = 0.54627422f;
 
 /// Real spherical harmonics up to l = 2 in Sloan's order and signs (algorithms.md, conventions).
-inline void sh_basis(float x, float y, float z, float* out) {
-    out[0] = kSh0;
+/// T: a number, or Lanes of them.
+template <class T>
+void sh_basis(const T& x, const T& y, const T& z, T* out) {
+    out[0] = T{} + kSh0;
     out[1] = -kSh1 * y;
     out[2] = kSh1 * z;
     out[3] = -kSh1 * x;

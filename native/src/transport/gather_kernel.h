@@ -13,9 +13,10 @@ namespace ajar {
 template <class Sink>
 struct Gatherer {
     using Through = typename Sink::Through;
-    static constexpr int kMaxLayers = 64;         ///< transmissive or switchable surfaces one gather ray may cross
-    static constexpr int kMaxUnmapped = 12;       ///< consecutive surfaces without lightmap
-    static constexpr float kNearTexels = 4.0f;    ///< a solid's inside closer than this speaks for an invalid receiver
+    static constexpr int kMaxLayers = 64;      ///< transmissive or switchable surfaces one gather ray may cross
+    static constexpr int kMaxUnmapped = 12;    ///< consecutive surfaces without lightmap
+    static constexpr float kNearTexels = 4.0f; ///< a solid's inside closer than this speaks for an invalid receiver
+    static constexpr uint32_t kNoTexel = 0xffffffffu;
     static constexpr float kLeastThrough = 1e-4f; ///< less light than this is not followed
 
     const GatherScene& g;
@@ -30,10 +31,21 @@ struct Gatherer {
     /// Where a gather ray comes from.
     struct Origin {
         uint32_t local;
-        float cosine;
-        uint32_t seed;
+        uint32_t sample;
         float weight; ///< inverse density of the ray, as if the hemisphere's rays were all, sr
     };
+
+    /// A packet on its way. The light it met is read after the next one is traced: by then it has come from memory.
+    struct Flight {
+        RayPacket packet;
+        PacketDirections local;
+        alignas(32) int32_t valid[kLanes];
+        uint32_t texel[kLanes]; ///< whose light an ordinary hit sees, or kNoTexel
+        uint32_t first, sample;
+        bool waits = false;
+    };
+    Flight flights[2];
+    uint32_t turn = 0;
 
     Gatherer(const GatherScene& scene, const GatherOptions& options, const Tile& t, const Sink& s)
         : g(scene),
@@ -62,37 +74,34 @@ struct Gatherer {
             for (uint32_t s = 0; s < o.aims->rays(aim); ++s, ++sample)
                 for (uint32_t first = 0; first < tile.count; first += kLanes)
                     if (o.packets.has(first)) shoot_aimed(first, aim, s, sample);
+        land(flights[turn ^ 1]);
     }
 
     void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
         const uint32_t count = std::min(kLanes, tile.count - first);
-        RayPacket packet;
-        PacketDirections local;
-        alignas(32) int32_t valid[kLanes];
-        for (uint32_t lane = 0; lane < kLanes; ++lane) valid[lane] = lane < count ? -1 : 0;
-        tile_rays.aim(first, stratum, packet, local);
+        Flight& f = flights[turn];
+        for (uint32_t lane = 0; lane < kLanes; ++lane) f.valid[lane] = lane < count ? -1 : 0;
+        tile_rays.aim(first, stratum, f.packet, f.local);
         if (o.aims != nullptr)
             for (uint32_t lane = 0; lane < count; ++lane) {
                 const uint32_t position = tile_rays.position(first + lane, stratum);
-                const float aimed = o.aims->density(first + lane, position, packet.direction(lane));
-                local.weight[lane] = mis_gather / (mis_gather / local.weight[lane] + aimed);
+                const float aimed = o.aims->density(first + lane, position, f.packet.direction(lane));
+                f.local.weight[lane] = mis_gather / (mis_gather / f.local.weight[lane] + aimed);
             }
-        trace(first, sample, packet, local, valid);
+        trace(first, sample);
     }
 
     /// One ray from each receiver of a packet into a box.
     void shoot_aimed(uint32_t first, uint32_t aim, uint32_t number, uint32_t sample) {
-        RayPacket packet;
-        PacketDirections local;
-        alignas(32) int32_t valid[kLanes];
+        Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            valid[lane] =
-                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, packet, local) ? -1 : 0;
-            if (valid[lane] != 0) continue;
-            packet.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
-            local.set(lane, Vec3(0, 0, 1), 0.0f);
+            f.valid[lane] =
+                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, f.packet, f.local) ? -1 : 0;
+            if (f.valid[lane] != 0) continue;
+            f.packet.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
+            f.local.set(lane, Vec3(0, 0, 1), 0.0f);
         }
-        trace(first, sample, packet, local, valid);
+        trace(first, sample);
     }
 
     bool aim_lane(uint32_t i, uint32_t lane, uint32_t aim, uint32_t number, RayPacket& packet,
@@ -111,43 +120,57 @@ struct Gatherer {
         return true;
     }
 
-    void trace(uint32_t first, uint32_t sample, RayPacket& packet, const PacketDirections& local,
-               const int32_t* valid) {
-        const uint32_t count = std::min(kLanes, tile.count - first);
-        packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
-        g.tracer.intersect(valid, packet);
-        fetch(packet, count);
+    void trace(uint32_t first, uint32_t sample) {
+        Flight& f = flights[turn];
+        f.first = first, f.sample = sample, f.waits = true;
+        f.packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
+        g.tracer.intersect(f.valid, f.packet);
+        fetch(f, std::min(kLanes, tile.count - first));
+        turn ^= 1;
+        land(flights[turn]);
+    }
+
+    void land(Flight& f) {
+        if (!f.waits) return;
+        f.waits = false;
+        const uint32_t count = std::min(kLanes, tile.count - f.first);
         for (uint32_t lane = 0; lane < count; ++lane) {
-            if (valid[lane] == 0) continue;
+            if (f.valid[lane] == 0) continue;
             ++rays;
-            shade(lane, first + lane, packet, sample, local.weight[lane]);
-            sink.end_sample(lane, first + lane, sample, local);
+            shade(lane, f);
+            sink.end_sample(lane, f.first + lane, f.sample, f.local);
         }
-        sink.add_cosines(first, count, local);
-        sink.end_packet(first, sample, local);
+        sink.add_cosines(f.first, count, f.local);
+        sink.end_packet(f.first, f.sample, f.local);
     }
 
     /// Calls for what the lanes will read from all over memory, so that they wait for it together.
-    void fetch(const RayPacket& packet, uint32_t count) const {
+    /// Most rays meet an ordinary lightmapped surface.
+    void fetch(Flight& f, uint32_t count) const {
+        std::fill(std::begin(f.texel), std::end(f.texel), kNoTexel);
         if (!sink.has_texels()) return;
-        for (uint32_t lane = 0; lane < count; ++lane)
-            if (const uint32_t t = packet.triangle[lane];
-                t != kMiss && (g.surfaces.flags(t) & SurfaceTable::kUnmapped) == 0)
-                sink.fetch(g.surfaces.texel(t, packet.u[lane], packet.v[lane]));
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            const uint32_t t = f.packet.triangle[lane];
+            if (t == kMiss || (g.surfaces.flags(t) & special) != 0 || is_back(f.packet, lane)) continue;
+            f.texel[lane] = g.surfaces.texel(t, f.packet.u[lane], f.packet.v[lane]);
+            sink.fetch(f.texel[lane]);
+        }
     }
 
-    /// Most rays meet an ordinary lightmapped surface; all else takes the long way.
-    void shade(uint32_t lane, uint32_t local, const RayPacket& packet, uint32_t sample, float weight) {
-        const uint32_t triangle = packet.triangle[lane], receiver = tile.first + local;
-        const Vec3 w = packet.direction(lane);
-        const bool back = triangle != kMiss && g.surfaces.back(triangle, w, packet.normal(lane));
-        const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, w};
-        const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane], back};
-        const Through through = sink.start(g.scene, g.receivers.triangle[receiver]);
-        const Origin from{local, glm::dot(w, g.receivers.frame[receiver].z),
-                          hash_combine(hash_combine(o.seed, g.receivers.texel[receiver]), sample), weight};
-        if (triangle != kMiss && !back && !(g.surfaces.flags(triangle) & special))
-            return first_hit(ray, hit, through, from);
+    bool is_back(const RayPacket& packet, uint32_t lane) const {
+        return g.surfaces.back(packet.triangle[lane], packet.direction(lane), packet.normal(lane));
+    }
+
+    void shade(uint32_t lane, const Flight& f) {
+        const RayPacket& packet = f.packet;
+        const uint32_t triangle = packet.triangle[lane], texel = f.texel[lane], local = f.first + lane;
+        const Through through = sink.start(g.scene, g.receivers.triangle[tile.first + local]);
+        if (texel != kNoTexel && sink.flags(texel) == 0) return sink.texel(through, texel, 1.0f);
+        const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, packet.direction(lane)};
+        const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane],
+                      triangle != kMiss && is_back(packet, lane)};
+        const Origin from{local, f.sample, f.local.weight[lane]};
+        if (texel != kNoTexel) return first_hit(ray, hit, through, from);
         walk(ray, hit, through, from, kMaxLayers);
     }
 
@@ -227,15 +250,35 @@ struct Gatherer {
             first_hit(ray, hit, through, from);
             return false;
         }
+        if (const uint32_t r = plain_receiver(hit, f); r != kNoReceiver) {
+            stand_in(ray, hit, through, g.receivers.albedo[r], from, layer);
+            return false;
+        }
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
         if (f & SurfaceTable::kEmits) emission(s.emission, ray, hit, through, from);
         if (mapped)
             first_hit(ray, hit, through, from);
         else
-            unmapped(ray, hit, through, s.reflectance, hash_combine(from.seed, static_cast<uint32_t>(layer)), 0,
-                     from.cosine);
+            stand_in(ray, hit, through, s.reflectance, from, layer);
         through.color *= s.transmittance;
         return max_component(through.color) > kLeastThrough;
+    }
+
+    /// Receiver of the texel of a surface that neither glows nor lets light through: its back reflects as its front.
+    uint32_t plain_receiver(const Hit& hit, uint8_t f) const {
+        if ((f & (SurfaceTable::kUnmapped | SurfaceTable::kTransmits | SurfaceTable::kEmits)) != 0) return kNoReceiver;
+        return g.receivers.of_texel[g.surfaces.texel(hit.triangle, hit.u, hit.v)];
+    }
+
+    /// What stands in for stored light where a gather ray meets a surface without it.
+    void stand_in(const Ray& ray, const Hit& hit, const Through& through, const Vec3& reflectance, const Origin& from,
+                  int layer) {
+        const float cosine = glm::dot(ray.direction, g.receivers.frame[tile.first + from.local].z);
+        unmapped(ray, hit, through, reflectance, hash_combine(seed_of(from), static_cast<uint32_t>(layer)), 0, cosine);
+    }
+
+    uint32_t seed_of(const Origin& from) const {
+        return hash_combine(hash_combine(o.seed, g.receivers.texel[tile.first + from.local]), from.sample);
     }
 
     float mis_weight(uint32_t emitter, float density, const Origin& from) const {

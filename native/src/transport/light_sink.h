@@ -30,9 +30,7 @@ public:
         arrived_ += through.color * Vec3(radiance_[texel]) * weight;
     }
     void add_inside(uint32_t local) { sums_.inside[local] += 1.0f; }
-    void add_cosines(uint32_t first, uint32_t, const PacketDirections& w) {
-        for (uint32_t lane = 0; lane < kLanes; ++lane) sums_.cosine_sum[first + lane] += w.weight[lane] * w.z[lane];
-    }
+    void add_cosines(uint32_t first, uint32_t, const PacketDirections& w) { sums_.add_cosines(first, w); }
     /// Keeps what one sample brought until its packet is complete.
     void end_sample(uint32_t lane, uint32_t, uint32_t, const PacketDirections&) {
         for (int c = 0; c < 3; ++c) packet_[c][lane] = arrived_[c];

@@ -52,6 +52,12 @@ public:
     /// [kLanes] coordinates of a stratum's points for the receivers from first on.
     const float* x(uint32_t first, uint32_t stratum) const { return &x_[index(first, stratum)]; }
     const float* y(uint32_t first, uint32_t stratum) const { return &y_[index(first, stratum)]; }
+    /// Calls for the points of a packet that comes next, if there is one.
+    void fetch(uint32_t first, uint32_t stratum) const {
+        if (first >= kTileReceivers) return;
+        __builtin_prefetch(x(first, stratum));
+        __builtin_prefetch(y(first, stratum));
+    }
 
 private:
     static uint32_t morton2(uint32_t x, uint32_t y) {

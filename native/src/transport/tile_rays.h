@@ -42,6 +42,7 @@ public:
             const Vec3 w = sample_hemisphere({x[lane], y[lane]}, share_);
             local.set(lane, w, 1.0f / hemisphere_pdf(std::max(w.z, 1e-6f), share_));
         }
+        batch_.fetch(first + kLanes, stratum);
         turn_to_world(first, local, packet);
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
             const Vec3& p = receivers_.origins(receiver(first + lane))[position(first + lane, stratum)];

@@ -29,46 +29,41 @@ struct alignas(32) TileSums {
         sh_rgb.assign(keep_sh ? size_t{3} * kShCount * kTileReceivers : 0, 0.0f);
     }
     /// Adds one sample of each of the receivers first to first + kLanes: radiance from directions w,
-    /// per channel and lane. Sample counts from 0. What is not finite counts as dark.
+    /// per channel and lane, aligned as Lanes are. Sample counts from 0. What is not finite counts as dark.
     void add(uint32_t first, uint32_t sample, const PacketDirections& w, const float (&radiance)[3][kLanes]) {
-        alignas(32) float facing[3][kLanes], light[kLanes];
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            const float r = radiance[0][lane] * w.weight[lane], g = radiance[1][lane] * w.weight[lane],
-                        b = radiance[2][lane] * w.weight[lane], l = luminance({r, g, b});
-            const bool finite = l - l == 0.0f;
-            facing[0][lane] = finite ? r : 0.0f, facing[1][lane] = finite ? g : 0.0f;
-            facing[2][lane] = finite ? b : 0.0f, light[lane] = finite ? l : 0.0f;
-        }
-        for (int c = 0; c < 3; ++c)
-            for (uint32_t lane = 0; lane < kLanes; ++lane) irradiance[c][first + lane] += facing[c][lane] * w.z[lane];
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            float y[kShCount];
-            sh_basis(w.x[lane], w.y[lane], w.z[lane], y);
-            for (int i = 0; i < kShCount; ++i) sh[i][first + lane] += y[i] * light[lane];
-        }
-        add_pairs(first, sample, w, light);
-        if (!sh_rgb.empty()) add_color(first, w, facing);
+        const Lanes x = lanes(w.x), y = lanes(w.y), z = lanes(w.z);
+        Lanes color[3], basis[kShCount];
+        for (int c = 0; c < 3; ++c) color[c] = lanes(radiance[c]) * lanes(w.weight);
+        Lanes light = 0.2126f * color[0] + 0.7152f * color[1] + 0.0722f * color[2];
+        const auto finite = light - light == 0.0f;
+        light = finite ? light : Lanes{};
+        for (int c = 0; c < 3; ++c) color[c] = finite ? color[c] : Lanes{};
+        for (int c = 0; c < 3; ++c) lanes(irradiance[c] + first) += color[c] * z;
+        sh_basis(x, y, z, basis);
+        for (int i = 0; i < kShCount; ++i) lanes(sh[i] + first) += basis[i] * light;
+        add_pairs(first, sample, light * z);
+        if (!sh_rgb.empty()) add_color(first, basis, color);
+    }
+    void add_cosines(uint32_t first, const PacketDirections& w) {
+        lanes(cosine_sum + first) += lanes(w.weight) * lanes(w.z);
     }
 
 private:
     /// Collapsed-strata variance: neighbouring strata pair up, their difference estimates twice
     /// the variance inside (Cochran 1977, 5A.12).
-    void add_pairs(uint32_t first, uint32_t sample, const PacketDirections& w, const float (&light)[kLanes]) {
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            const float value = light[lane] * w.z[lane];
-            const double d = (sample & 1) != 0 ? double(value) - double(previous[first + lane]) : 0.0;
-            pairs[first + lane] += d * d;
-            previous[first + lane] = value;
-        }
+    void add_pairs(uint32_t first, uint32_t sample, const Lanes& value) {
+        if ((sample & 1) != 0)
+            for (uint32_t lane = 0; lane < kLanes; ++lane) {
+                const double d = double(value[lane]) - double(previous[first + lane]);
+                pairs[first + lane] += d * d;
+            }
+        lanes(previous + first) = value;
     }
-    void add_color(uint32_t first, const PacketDirections& w, const float (&facing)[3][kLanes]) {
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            float y[kShCount];
-            sh_basis(w.x[lane], w.y[lane], w.z[lane], y);
-            for (size_t i = 0; i < kShCount; ++i)
-                for (size_t c = 0; c < 3; ++c)
-                    sh_rgb[(3 * i + c) * kTileReceivers + first + lane] += y[i] * facing[c][lane];
-        }
+    void add_color(uint32_t first, const Lanes* basis, const Lanes* color) {
+        for (size_t i = 0; i < kShCount; ++i)
+            for (size_t c = 0; c < 3; ++c)
+                for (uint32_t lane = 0; lane < kLanes; ++lane)
+                    sh_rgb[(3 * i + c) * kTileReceivers + first + lane] += basis[i][lane] * color[c][lane];
     }
 };
 
