@@ -87,23 +87,5 @@ TEST(NoisePlan, TheModelLearnsHowNoiseFalls) {
     EXPECT_EQ(fit_noise_model({}, {32, 32}, {256, 256}).calibration, 1.0f);
 }
 
-TEST(NoisePlan, TimeIsSavedOnNoiseFirstAndOnFirstRaysLast) {
-    const std::vector<Tile> tiles = {{0, 256}};
-    const std::vector<MeasuredNoise> pilot(kPilotParts, noise(0.3f));
-    RayPlan first = kFirst;
-    NoiseGoal goal = kGoal;
-    const double all = predict_rays(pilot, {32, 32}, tiles, first, goal);
-    EXPECT_FALSE(fit_to_time(pilot, {32, 32}, tiles, all, first, goal));
-    EXPECT_EQ(goal.target, kGoal.target);
-    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 0.5 * all, first, goal));
-    EXPECT_GT(goal.target, kGoal.target);
-    EXPECT_EQ(first.gather, 64u);
-    EXPECT_LE(predict_rays(pilot, {32, 32}, tiles, first, goal), 0.5 * all);
-    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 256.0 * 40.0, first, goal));
-    EXPECT_LE(first.gather + first.direct, 40u);
-    EXPECT_TRUE(fit_to_time(pilot, {32, 32}, tiles, 0.0, first, goal)); // no fewer than the fewest
-    EXPECT_EQ(first.gather, 8u);
-}
-
 } // namespace
 } // namespace ajar

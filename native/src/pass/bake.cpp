@@ -10,8 +10,9 @@
 
 namespace ajar {
 
-Baker::Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress)
-    : s_(scene), settings_(settings), pool_(pool), progress_(progress) {
+Baker::Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress,
+             double seconds_to_store)
+    : s_(scene), settings_(settings), pool_(pool), progress_(progress), seconds_to_store_(seconds_to_store) {
     current_.resize(s_.receivers.count());
     radiance_.resize(s_.scene.texel_count());
 }
@@ -118,7 +119,9 @@ BakeResult Baker::run() {
     const uint32_t passes = settings_.bounces + (settings_.keep_bounces != 0 ? 1 : 0);
     for (uint32_t b = 1; b < passes; ++b) {
         set_radiance(current_);
+        const double start = progress_.elapsed();
         bounce(b);
+        settings_.bounce_samples = bounce_samples_in_time(settings_, start, progress_.elapsed(), passes - 1 - b);
     }
     if (settings_.bounces > 0) {
         // With every bounce kept apart the last one was made for show; the gather adds it itself.

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "pass/noise_plan.h"
+#include "pass/gather_pace.h"
 #include "pass/term_result.h"
 
 namespace ajar {
@@ -34,7 +34,9 @@ struct BakeResult {
 /// Runs the transport passes over all receivers. Throws Cancelled.
 class Baker {
 public:
-    Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress);
+    /// seconds_to_store: what follows takes per receiver and term; a time limit leaves room for it.
+    Baker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress,
+          double seconds_to_store = 0.0);
     BakeResult run();
 
 private:
@@ -60,8 +62,12 @@ private:
     FurtherRays refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
                        TileLight& light);
     void final_gather();
+    void gather_in_rounds();
+    void finish_tile(size_t tile);
     void calibrate_error();
     bool gathers() const;
+    /// Seconds that the time limit leaves for the passes.
+    double time_left() const;
     GatherScene final_scene() const {
         return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
     }
@@ -70,9 +76,11 @@ private:
     ajar_settings settings_;
     ThreadPool& pool_;
     Progress& progress_;
+    double seconds_to_store_;
     BakeResult result_;
     NoiseGoal goal_;
     RayPlan first_;                    ///< rays of every receiver
+    std::unique_ptr<GatherPace> pace_; ///< of a bake with a time limit
     std::vector<FurtherRays> further_; ///< per tile
     std::vector<Vec3> current_;        ///< irradiance of the bounce in hand
     std::unique_ptr<EmitterSet> final_emitters_;

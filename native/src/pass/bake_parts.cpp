@@ -6,7 +6,9 @@ namespace ajar {
 namespace {
 
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
-constexpr float kQuadNormal = 0.95f;  ///< receivers of a 2x2 block share bounce rays if their normals agree
+constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces after the first may take
+constexpr uint32_t kLeastBounceSamples = 16;
+constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 } // namespace
 
@@ -91,23 +93,37 @@ float error_calibration(const std::vector<Vec2>& parts) {
     return static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
 }
 
-bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds) {
+bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size_t first, double seconds_per_ray,
+                double seconds) {
+    const Rounds rounds{tiles.size()};
+    std::vector<size_t> open;
+    for (size_t i = 0; i < tiles.size(); ++i)
+        if (i % rounds.count() >= first) open.push_back(i);
     const auto cost = [&] {
         double rays = 0.0;
-        for (size_t i = 0; i < plan.size(); ++i) rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
+        for (const size_t i : open) rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
         return rays * seconds_per_ray;
     };
     bool limited = false;
     while (cost() > seconds) {
         bool changed = false;
-        for (RayPlan& p : plan) {
-            if (p.gather > 8) p.gather /= 2, changed = true;
-            if (p.direct > 4) p.direct /= 2, changed = true;
+        for (const size_t i : open) {
+            if (plan[i].gather > 8) plan[i].gather /= 2, changed = true;
+            if (plan[i].direct > 4) plan[i].direct /= 2, changed = true;
         }
         if (!changed) break;
         limited = true;
     }
     return limited;
+}
+
+uint32_t bounce_samples_in_time(const ajar_settings& settings, double start, double now, uint32_t passes_left) {
+    uint32_t samples = settings.bounce_samples;
+    if (!(settings.time_limit > 0.0f)) return samples;
+    const double allowed = kBounceShare * std::max(settings.time_limit - now, 0.0);
+    for (double seconds = (now - start) * passes_left; seconds > allowed && samples > kLeastBounceSamples; seconds /= 2)
+        samples /= 2;
+    return samples;
 }
 
 } // namespace ajar

@@ -15,6 +15,7 @@ inline constexpr uint32_t kPilotRays = 32;
 inline constexpr uint32_t kPilotParts = 4;      ///< of each tile: its light may differ much from place to place
 inline constexpr uint32_t kPilotReceivers = 8;  ///< of each part
 inline constexpr uint32_t kCalibrationStep = 4; ///< every n-th tile is estimated twice
+inline constexpr double kPlannedPart = 0.97;    ///< of the time left for the final gather; checks of the error follow
 inline constexpr float kFinalShare = 0.5f;      ///< cosine share of the final rays (algorithms.md 1.10)
 
 enum BakeSalt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
@@ -58,7 +59,23 @@ Vec2 compare_twins(float a, float b, double standard_error);
 /// Factor of the strata's standard errors, from the sums of compare_twins() of a bake; 1 if they are too few.
 float error_calibration(const std::vector<Vec2>& parts);
 
-/// Halves ray counts until the rest of the bake fits into seconds; true if it had to.
-bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, double seconds_per_ray, double seconds);
+/// Tiles of a gather against the clock are done in rounds, each of tiles from all over the scene.
+struct Rounds {
+    static constexpr size_t kMost = 16;
+    size_t tiles;
+
+    size_t count() const { return std::min(tiles, kMost); }
+    size_t size(size_t round) const { return (tiles - round + count() - 1) / count(); }
+    /// Number k of a round.
+    size_t tile(size_t round, size_t k) const { return round + k * count(); }
+};
+
+/// Halves the ray counts of the rounds from first on until they fit into seconds; true if it had to.
+bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size_t first, double seconds_per_ray,
+                double seconds);
+
+/// Rays per bounce for the passes that are left after one that began at start, so that a short time limit leaves
+/// most of the time to the final gather. Seconds.
+uint32_t bounce_samples_in_time(const ajar_settings& settings, double start, double now, uint32_t passes_left);
 
 } // namespace ajar

@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kPackets = kTileReceivers / kLanes;
 constexpr uint32_t kPool = 4;                  ///< packets whose noise speaks for each of them
-constexpr RayPlan kFirstRays = {64, 64};       ///< enough to measure noise by
+constexpr size_t kPilotTiles = 2048;           ///< that the pilot looks at, of scenes with more than twice as many
 using Packets = std::array<uint8_t, kPackets>; ///< marks
 
 void mean_noise(const TileEstimate& t, uint32_t first, uint32_t end, MeasuredNoise& out) {
@@ -81,7 +81,7 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
     return trial;
 }
 
-/// Pilot: few receivers of every tile with few rays, discarded afterwards. They say what is dark, and what the
+/// Pilot: few receivers of some tiles with few rays, discarded afterwards. They say what is dark, and what the
 /// rays that the noise aimed at needs will cost.
 void Baker::plan_rays() {
     const bool timed = settings_.time_limit > 0.0f;
@@ -92,7 +92,9 @@ void Baker::plan_rays() {
     if (goal_.target > 0.0f)
         first_ = {std::min(first_.gather, kFirstRays.gather), std::min(first_.direct, kFirstRays.direct)};
 
-    const std::vector<Tile>& tiles = s_.receivers.tiles;
+    std::vector<Tile> tiles;
+    const size_t step = std::max<size_t>(s_.receivers.tiles.size() / kPilotTiles, 1);
+    for (size_t i = 0; i < s_.receivers.tiles.size(); i += step) tiles.push_back(s_.receivers.tiles[i]);
     std::vector<MeasuredNoise> pilot(tiles.size() * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
@@ -110,12 +112,12 @@ void Baker::plan_rays() {
         }
     });
     goal_.model = fit_noise_model(trials, small, large);
-    const double seconds_per_ray =
-        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
     goal_.dark = dark_level(pilot);
     if (!timed) return;
-    const double seconds = 0.92 * (settings_.time_limit - progress_.elapsed());
-    result_.time_limited = fit_to_time(pilot, small, tiles, seconds / seconds_per_ray, first_, goal_);
+    const double seconds_per_ray =
+        (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
+    pace_ = std::make_unique<GatherPace>(std::move(pilot), small, std::move(tiles), s_.receivers.count());
+    result_.time_limited = pace_->begin(time_left(), seconds_per_ray, first_, goal_);
 }
 
 /// Adds further rays to the packets of a tile that need them, all packets with one need together.
@@ -153,25 +155,51 @@ void Baker::final_gather() {
     result_.samples.resize(n);
     result_.inside.resize(n);
     further_.resize(s_.receivers.tiles.size());
-    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
-        DirectGroups groups = look_around(tile, seed);
-        auto light = std::make_unique<TileLight>();
-        const TileEstimate first = estimate(tile, first_, groups, {}, seed, keep_sh);
-        further_[i] = refine(tile, first, groups, hash_combine(seed, 1), *light);
-        for (uint32_t lane = 0; lane < tile.count; ++lane) {
-            const size_t r = tile.first + lane;
-            result_.irradiance[r] = light->irradiance[lane];
-            result_.standard_error[r] = static_cast<float>(std::sqrt(light->variance[lane]));
-            result_.samples[r] = light->samples[lane];
-            result_.inside[r] = light->inside[lane];
-            std::copy_n(light->sh[lane], kShCount, &result_.sh[r * kShCount]);
-            if (keep_sh)
-                std::copy_n(&light->sh_rgb[size_t{lane} * 3 * kShCount], 3 * kShCount,
-                            &result_.sh_rgb[r * 3 * kShCount]);
-        }
-    });
+    if (pace_ == nullptr)
+        pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) { finish_tile(i); });
+    else
+        gather_in_rounds();
+}
+
+double Baker::time_left() const {
+    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count();
+}
+
+/// Every round takes tiles from all over the scene, so each takes about as long.
+void Baker::gather_in_rounds() {
+    const Rounds rounds{s_.receivers.tiles.size()};
+    uint32_t done = 0;
+    for (size_t round = 0; round < rounds.count(); ++round) {
+        const double start = progress_.elapsed();
+        uint32_t receivers = 0;
+        for (size_t k = 0; k < rounds.size(round); ++k) receivers += s_.receivers.tiles[rounds.tile(round, k)].count;
+        pool_.for_each(
+            rounds.size(round), progress_, [&](size_t k) { finish_tile(rounds.tile(round, k)); }, false);
+        progress_.update(static_cast<float>(done += receivers) / static_cast<float>(s_.receivers.count()));
+        const double now = progress_.elapsed();
+        if (pace_->follow(receivers, now - start, settings_.time_limit - now, first_, goal_))
+            result_.time_limited = true;
+    }
+}
+
+void Baker::finish_tile(size_t i) {
+    const bool keep_sh = settings_.keep_sh != 0;
+    const Tile& tile = s_.receivers.tiles[i];
+    const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
+    DirectGroups groups = look_around(tile, seed);
+    auto light = std::make_unique<TileLight>();
+    const TileEstimate first = estimate(tile, first_, groups, {}, seed, keep_sh);
+    further_[i] = refine(tile, first, groups, hash_combine(seed, 1), *light);
+    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        const size_t r = tile.first + lane;
+        result_.irradiance[r] = light->irradiance[lane];
+        result_.standard_error[r] = static_cast<float>(std::sqrt(light->variance[lane]));
+        result_.samples[r] = light->samples[lane];
+        result_.inside[r] = light->inside[lane];
+        std::copy_n(light->sh[lane], kShCount, &result_.sh[r * kShCount]);
+        if (keep_sh)
+            std::copy_n(&light->sh_rgb[size_t{lane} * 3 * kShCount], 3 * kShCount, &result_.sh_rgb[r * 3 * kShCount]);
+    }
 }
 
 /// The strata estimate is biased up where strata differ in mean. A second, independent answer

@@ -155,25 +155,4 @@ double predict_rays(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilo
     return sum;
 }
 
-bool fit_to_time(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
-                 double affordable, RayPlan& first, NoiseGoal& goal) {
-    const auto fits = [&] { return predict_rays(pilot, pilot_rays, tiles, first, goal) <= affordable; };
-    if (fits()) return false;
-    if (const float wanted = goal.target; wanted > 0.0f) {
-        float low = wanted, high = 1e3f * wanted;
-        for (int i = 0; i < 24; ++i) {
-            goal.target = std::sqrt(low * high);
-            (fits() ? high : low) = goal.target;
-        }
-        goal.target = high;
-        if (fits()) return true;
-        goal.target = 0.0f;
-    }
-    while (!fits() && (first.gather > 8 || first.direct > 4)) {
-        if (first.gather > 8) first.gather /= 2;
-        if (first.direct > 4) first.direct /= 2;
-    }
-    return true;
-}
-
 } // namespace ajar

@@ -58,9 +58,4 @@ float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPl
 double predict_rays(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
                     const RayPlan& first, const NoiseGoal& goal);
 
-/// Raises the noise aimed at, then lowers the first rays, until the predicted rays are at most affordable; true
-/// if it had to.
-bool fit_to_time(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays, const std::vector<Tile>& tiles,
-                 double affordable, RayPlan& first, NoiseGoal& goal);
-
 } // namespace ajar

@@ -17,8 +17,14 @@ uint32_t order_of(uint32_t combinations) {
 
 } // namespace
 
-TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress)
-    : s_(scene), settings_(settings), pool_(pool), progress_(progress), limits_{order_of(settings.combinations)} {
+TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress,
+                     double seconds_to_store)
+    : s_(scene),
+      settings_(settings),
+      pool_(pool),
+      progress_(progress),
+      seconds_to_store_(seconds_to_store),
+      limits_{order_of(settings.combinations)} {
     for (uint32_t e = 0; e < s_.scene.elements.size(); ++e)
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
 }
@@ -193,12 +199,17 @@ BakeResult TermBaker::run() {
     progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
-    for (uint32_t b = 1; b < settings_.bounces; ++b) bounce(b);
+    for (uint32_t b = 1; b < settings_.bounces; ++b) {
+        const double start = progress_.elapsed();
+        bounce(b);
+        settings_.bounce_samples =
+            bounce_samples_in_time(settings_, start, progress_.elapsed(), settings_.bounces - 1 - b);
+    }
     radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
                               s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
-    const std::vector<RayPlan> plan = plan_rays();
+    std::vector<RayPlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
     final_gather(plan);
     calibrate_error(plan);

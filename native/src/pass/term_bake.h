@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+
 #include "pass/bake.h"
 #include "pass/term_merge.h"
 
@@ -10,7 +12,9 @@ namespace ajar {
 /// receiver is a sparse row with one colour per term; the same rays serve all of them.
 class TermBaker {
 public:
-    TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress);
+    /// seconds_to_store: what follows takes per receiver and term; a time limit leaves room for it.
+    TermBaker(const GatherScene& scene, const ajar_settings& settings, ThreadPool& pool, Progress& progress,
+              double seconds_to_store = 0.0);
     /// Runs all passes. Throws Cancelled.
     BakeResult run();
 
@@ -35,11 +39,15 @@ private:
     uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
-    void final_gather(const std::vector<RayPlan>& plan);
+    void final_gather(std::vector<RayPlan>& plan);
+    /// finish_tile: of a tile; returns how much light it stores.
+    void gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile);
     void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
     void join(std::vector<struct FinalTile>& tiles);
     void calibrate_error(const std::vector<RayPlan>& plan);
     bool gathers() const;
+    /// Seconds that the time limit leaves for the passes if that much light gets stored beside the base.
+    double time_left(double lights) const;
     std::vector<uint32_t> sets_of(const Tile& tile) const;
     GatherScene final_scene() const {
         return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
@@ -49,6 +57,7 @@ private:
     ajar_settings settings_;
     ThreadPool& pool_;
     Progress& progress_;
+    double seconds_to_store_;
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;
@@ -58,6 +67,7 @@ private:
     std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
     std::vector<AimBox> doors_;
+    double pilot_pace_ = 0.0; ///< seconds per ray
 };
 
 } // namespace ajar

@@ -169,14 +169,11 @@ std::vector<RayPlan> TermBaker::plan_rays() {
             if (is_trial(i, k)) trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups);
         }
     });
-    const double seconds_per_ray =
+    pilot_pace_ =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
     const NoiseGoal goal{settings_.noise_target, dark_level(pilot), most, gathers(),
                          fit_noise_model(trials, small, large)};
     if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
-    if (timed)
-        result_.time_limited =
-            limit_time(plan, s_.receivers.tiles, seconds_per_ray, 0.92 * (settings_.time_limit - progress_.elapsed()));
     return plan;
 }
 

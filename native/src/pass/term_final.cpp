@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The final pass of a bake with elements, and what it stores.
+#include <atomic>
+
 #include "pass/term_estimate.h"
 
 namespace ajar {
@@ -73,7 +75,38 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
         out.discarded.push_back(static_cast<float>(dropped[i] / std::max(kept[i] + dropped[i], 1e-30)));
 }
 
-void TermBaker::final_gather(const std::vector<RayPlan>& plan) {
+double TermBaker::time_left(double lights) const {
+    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count());
+}
+
+/// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.
+void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile) {
+    const std::vector<Tile>& tiles = s_.receivers.tiles;
+    const std::vector<RayPlan> wanted = plan;
+    const Rounds rounds{tiles.size()};
+    double rays = 0.0, taken = 0.0, receivers = 0.0;
+    std::atomic<size_t> stored{0};
+    for (size_t round = 0; round < rounds.count(); ++round) {
+        const double start = progress_.elapsed();
+        for (size_t i = 0; i < plan.size(); ++i)
+            if (i % rounds.count() >= round) plan[i] = wanted[i];
+        const double lights = round > 0 ? static_cast<double>(stored) / receivers * s_.receivers.count()
+                                        : static_cast<double>(source_.entries.size());
+        const double pace = rays > 0.0 ? taken / rays : pilot_pace_;
+        if (limit_time(plan, tiles, round, pace, kPlannedPart * time_left(lights))) result_.time_limited = true;
+        pool_.for_each(
+            rounds.size(round), progress_, [&](size_t k) { stored += finish_tile(rounds.tile(round, k)); }, false);
+        for (size_t k = 0; k < rounds.size(round); ++k) {
+            const size_t i = rounds.tile(round, k);
+            rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
+            receivers += tiles[i].count;
+        }
+        taken += progress_.elapsed() - start;
+        progress_.update(static_cast<float>(round + 1) / static_cast<float>(rounds.count()));
+    }
+}
+
+void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     const uint32_t n = s_.receivers.count();
     result_.irradiance.assign(n, Vec3(0.0f));
     result_.sh.assign(size_t{n} * kShCount, 0.0f);
@@ -81,10 +114,15 @@ void TermBaker::final_gather(const std::vector<RayPlan>& plan) {
     result_.samples.assign(n, 0.0f);
     result_.inside.assign(n, 0.0f);
     std::vector<FinalTile> tiles(s_.receivers.tiles.size());
-    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
+    const auto finish_tile = [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
         store_tile(tile, plan[i], estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal)), tiles[i]);
-    });
+        return tiles[i].light.size();
+    };
+    if (settings_.time_limit > 0.0f)
+        gather_in_rounds(plan, finish_tile);
+    else
+        pool_.for_each(tiles.size(), progress_, finish_tile);
     join(tiles);
 }
 
