@@ -200,6 +200,16 @@ TEST(Buffers, TheReportTellsTheSizeItNeeds) {
     EXPECT_EQ(std::strlen(text.data()) + 1, needed);
 }
 
+TEST(Settings, ATimeLimitThatNothingCanKeepIsSaid) {
+    kit::Scene scene;
+    kit::fill_room(scene);
+    ajar_settings s = kit::quick();
+    s.time_limit = 1e-4f;
+    const kit::Bake bake(scene, s);
+    EXPECT_TRUE(kit::all_finite(bake.layer(AJAR_LAYER_IRRADIANCE)));
+    EXPECT_NE(bake.report().find("its time limit"), std::string::npos);
+}
+
 TEST(Texts, AreCutToTheSizeGivenAndTerminated) {
     kit::Scene scene;
     kit::MeshData plane = kit::plane(1.0f, 0.0f);

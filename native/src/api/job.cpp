@@ -2,6 +2,7 @@
 #include "api/job.h"
 
 #include <chrono>
+#include <cstdio>
 
 #include "encode/ahd.h"
 #include "pass/term_bake.h"
@@ -25,6 +26,19 @@ double seconds_to_store(uint32_t threads) {
     }
     const double each = std::chrono::duration<double>(Clock::now() - start).count() / kTried;
     return std::isfinite(sum) ? kWithTheRest * each / threads : 0.0; // always; keeps the trial from being left out
+}
+
+/// Receivers, bounces and the fewest rays take their time, however short the limit.
+void warn_of_lateness(const ajar_settings& settings, double seconds, const std::string& scene,
+                      std::vector<Warning>& warnings) {
+    constexpr double kLate = 1.1;
+    if (!(settings.time_limit > 0.0f) || seconds <= kLate * settings.time_limit) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "took %.0f s although its time limit is %.0f s: even the fewest rays take that long; lower the texel "
+                  "density or the bounces",
+                  seconds, settings.time_limit);
+    warnings.push_back({scene, text});
 }
 
 } // namespace
@@ -55,6 +69,7 @@ void Job::bake(Progress& progress) {
                                           : TermBaker(gather, settings_, pool, progress, store).run();
     progress.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
+    warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
     if (settings_.check_points == 0) return;
     output_.check = check_bake(scene, tracer, output_.pages, output_.bake.bounce_means, settings_, pool, progress);
     for (Warning& w : check_warnings(output_.check, scene.name)) output_.warnings.push_back(std::move(w));
