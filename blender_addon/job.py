@@ -165,12 +165,12 @@ class Job:
             worker.close()
 
 
-def layout_steps(job, keep_existing=False, overrides=None, end=1.0):
-    """Unwraps and packs lightmap UVs of the scene. Returns the layout as write_snapshot takes it."""
+def layout_steps(job, keep_existing=False, overrides=None, end=1.0, stays=True):
+    """Unwraps and packs lightmap UVs of the scene. Returns the layout as write_snapshot takes it. stays: the scene
+    keeps them, as a step that can be undone."""
     job.status.stage = "lightmap layout"
     yield
-    folder = os.path.join(job.folder, "layout")
-    os.makedirs(folder)
+    folder = tempfile.mkdtemp(prefix="layout-", dir=job.folder)
     scene = job.link.scene()
     with job.link.context():
         preview.hide()
@@ -183,7 +183,8 @@ def layout_steps(job, keep_existing=False, overrides=None, end=1.0):
     scene = job.link.scene()
     layout, new_uvs = layout_extract.read_layout(folder, mapping)
     job.status.warn_all(uvs.apply_layout(scene, layout, new_uvs, mapping.meshes))
-    _push_undo("Lightmap UVs")
+    if stays:
+        _push_undo("Lightmap UVs")
     return layout
 
 
@@ -213,17 +214,22 @@ def _stamp(package):
 def _package_steps(job, package, report, keep_existing, overrides):
     """A bake up to its package: layout, snapshot and worker."""
     layout = yield from layout_steps(job, keep_existing, overrides, 0.05)
+    folder = os.path.join(job.folder, "snapshot")
+    yield from snapshot_steps(job, folder, layout, overrides)
+    os.makedirs(os.path.dirname(package), exist_ok=True)
+    yield from job.run_worker(WorkerClient.bake(folder, package, report), 0.07, 1.0)
+
+
+def snapshot_steps(job, folder, layout, overrides=None):
+    """Writes the scene for a worker into a new folder."""
     job.status.stage = "scene export"
     yield
-    folder = os.path.join(job.folder, "snapshot")
     os.makedirs(folder)
     scene = job.link.scene()
     with job.link.context():
         wanted = settings.engine_settings(scene, overrides)
         written = snapshot_extract.write_snapshot(bpy.context, folder, wanted, layout)
     job.status.warn_all(written.warnings)
-    os.makedirs(os.path.dirname(package), exist_ok=True)
-    yield from job.run_worker(WorkerClient.bake(folder, package, report), 0.07, 1.0)
 
 
 def finish(job, package, report, show, overrides=None):

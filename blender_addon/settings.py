@@ -3,10 +3,12 @@
 import os
 
 from . import fields, model
+from .accuracy.study import PAGE
 from .apply.record import absolute_path
 
 PACKAGE = "package"
 REPORT = "report.json"
+ACCURACY = "accuracy"
 _FROM_SCENE = (
     "bounces",
     "time_limit",
@@ -44,6 +46,11 @@ def output_paths(scene):
     """(package directory, report file) of the scene, absolute."""
     folder = absolute_path(scene.ajar.output_dir or "//")
     return os.path.join(folder, PACKAGE), os.path.join(folder, REPORT)
+
+
+def accuracy_page(scene):
+    """The page that ajar.accuracy leaves, absolute."""
+    return os.path.join(absolute_path(scene.ajar.output_dir or "//"), ACCURACY, PAGE)
 
 
 def _given(overrides):

@@ -15,6 +15,7 @@ from pathlib import Path
 from . import abi
 
 WORKER = Path(__file__).resolve().parent / "worker.py"
+ACCURACY_WORKER = WORKER.parent.parent / "accuracy" / "worker.py"
 _FINAL = {"done", "cancelled", "error"}
 _STDERR_LINES = 40
 
@@ -51,6 +52,11 @@ class WorkerClient:
     def layout(cls, directory, **options):
         """Worker that answers a layout request directory."""
         return cls(["layout", directory], **options)
+
+    @classmethod
+    def accuracy(cls, directory, out, **options):
+        """Worker that measures snapshots (see accuracy/worker.py) and leaves its page in out (directory)."""
+        return cls([directory, "--out", out], worker=ACCURACY_WORKER, **options)
 
     @property
     def running(self):

@@ -199,15 +199,15 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
-def main(arguments=None):
-    """Runs one command; returns the exit code."""
+def serve(command, arguments):
+    """Runs command(library, host, arguments) as a worker does: politely, cancelled on request, failures told as
+    events. arguments.directory is what bad input is blamed on. Returns the exit code."""
     faulthandler.enable()
-    arguments = parse(arguments)
     be_polite()
     host = Host()
     host.listen()
     try:
-        code = arguments.run(load_library(), host, arguments)
+        code = command(load_library(), host, arguments)
     except BakeError as error:
         host.send("error", code=error.code, message=error.message, culprit=error.culprit)
         return FAILED
@@ -223,6 +223,12 @@ def main(arguments=None):
     if code == CANCELLED:
         host.send("cancelled")
     return code
+
+
+def main(arguments=None):
+    """Runs one command; returns the exit code."""
+    arguments = parse(arguments)
+    return serve(arguments.run, arguments)
 
 
 if __name__ == "__main__":

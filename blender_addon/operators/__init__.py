@@ -2,9 +2,10 @@
 """Operators, one file per concept."""
 import bpy
 
-from . import bake, check, light_sets, movables, preview, uvs
+from . import accuracy, bake, check, light_sets, movables, preview, uvs
 
 CLASSES = (
+    *accuracy.CLASSES,
     *bake.CLASSES,
     *check.CLASSES,
     *light_sets.CLASSES,

@@ -2,9 +2,9 @@
 """Panels: they draw properties, progress and the last report, and hold no logic."""
 import bpy
 
-from . import bake, elements, tags
+from . import accuracy, bake, elements, tags
 
-CLASSES = (*bake.CLASSES, *elements.CLASSES, *tags.CLASSES)
+CLASSES = (*bake.CLASSES, *elements.CLASSES, *accuracy.CLASSES, *tags.CLASSES)
 
 
 def register():

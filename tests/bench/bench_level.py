@@ -5,8 +5,10 @@
 """
 import ctypes
 import sys
+from pathlib import Path
 
-import engine
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from blender_addon.accuracy import engine  # noqa: E402
 
 
 def main():

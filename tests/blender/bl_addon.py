@@ -50,6 +50,8 @@ OBJECT = {
     "combine",
 }
 OPERATORS = (
+    "accuracy",
+    "accuracy_show",
     "bake",
     "cancel",
     "check",

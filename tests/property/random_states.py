@@ -23,8 +23,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-import engine  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from blender_addon.accuracy import engine  # noqa: E402
 from blender_addon.bridge import abi  # noqa: E402
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])

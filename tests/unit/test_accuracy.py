@@ -1,19 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The accuracy command's arithmetic, on made-up bakes whose errors are known."""
-import sys
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "accuracy"))
-import advice  # noqa: E402
-import bakes  # noqa: E402
-import knobs  # noqa: E402
-import measure  # noqa: E402
-import page  # noqa: E402
-import storage  # noqa: E402
+from blender_addon.accuracy import advice, bakes, knobs, measure, page, storage
 
 COUNT = 20000
 

@@ -2,7 +2,7 @@
 """What the numbers say, in words."""
 import math
 
-from measure import WORST
+from .measure import WORST
 
 
 def percent(x):

@@ -2,7 +2,7 @@
 """Ways to store directional light, read back at normals that a normal map tilts."""
 import numpy as np
 
-from bakes import LUMINANCE, lookup
+from .bakes import LUMINANCE, lookup
 
 TILT = 0.7  # radians
 NORMALS = tuple((np.sin(TILT) * np.cos(a), np.sin(TILT) * np.sin(a), np.cos(TILT)) for a in (0.4, 2.5, 4.6))

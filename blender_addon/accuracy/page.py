@@ -3,9 +3,9 @@
 import csv
 import html
 
-from advice import duration, frontier, percent
-from measure import BAND, FLOOR
-from plots import Axis, Point, Series, bars, chart
+from .advice import duration, frontier, percent
+from .measure import BAND, FLOOR
+from .plots import Axis, Point, Series, bars, chart
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 960px; margin: 2em auto; padding: 0 1em; color: #222 }
@@ -167,7 +167,7 @@ bounces, {about['batches']} batches of 64 paths per point in {duration(about['re
 <li>Bands hold {BAND[1] - BAND[0]:.0f}% of resampled points. Bold: nothing tried is both faster and better.</li>
 <li>Time: processor time over {about['threads']} threads, so that other load on the machine does not count.</li>
 <li>Stated and true noise are over all valid texels, dark ones against 1% of the median, light sets off.</li>
-<li>State: {html.escape(about['state'])}. Not tried for lack of time: {html.escape(skipped)}.</li></ul>"""
+<li>State: {html.escape(about['state'])}. Not tried: {html.escape(skipped)}.</li></ul>"""
 
 
 def write_page(path, about, trials, base, advice, storage):

@@ -3,18 +3,15 @@
 import ctypes as c
 import json
 import os
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "bench")]
-import engine  # noqa: E402
-from blender_addon.bridge import abi  # noqa: E402
-from blender_addon.bridge.library import check  # noqa: E402
-from blender_addon.bridge.snapshot_io import Reader  # noqa: E402
+from .. import model
+from ..bridge import abi
+from ..bridge.library import check
+from ..bridge.snapshot_io import Reader
+from . import engine
 
 LAYER_STDERR, LAYER_AHD, LAYER_SH = 1, 6, 4
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
@@ -22,7 +19,9 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 def threads():
     """Processors this process may use."""
-    return len(os.sched_getaffinity(0))
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 class Stopwatch:
@@ -63,7 +62,7 @@ class SceneFile:
         known = {e["name"]: float(e["weight"]) for e in self.elements}
         for name, weight in (given or {}).items():
             if name not in known:
-                raise SystemExit(f"accuracy: the scene has no light set, door or toggle named {name}")
+                raise ValueError(f"the scene has no light set, door or toggle named {name}")
             known[name] = weight
         return np.array(list(known.values()), np.float32)
 
@@ -97,9 +96,9 @@ class SceneFile:
 class Lightmaps:
     """One finished bake: light of a state on every page, with how long it took."""
 
-    def __init__(self, library, scene, weights, **settings):
+    def __init__(self, library, scene, weights, cancelled=engine.never, **settings):
         watch = Stopwatch()
-        with engine.Bake(library, scene.folder, **settings) as bake:
+        with engine.Bake(library, scene.folder, cancelled, **settings) as bake:
             self.seconds, self.wall = watch.seconds(), watch.wall()
             pages = range(len(bake.pages))
             base = [bake.layer(p, engine.LAYER_IRRADIANCE) for p in pages]
@@ -146,7 +145,18 @@ def lookup(layers, pages, uv):
 class Reference:
     """Brute force answers at random points."""
 
-    def __init__(self, library, scene, weights, bounces, points, seconds, seed=0, normal=(0, 0, 1)):
+    def __init__(
+        self,
+        library,
+        scene,
+        weights,
+        bounces,
+        points,
+        seconds,
+        seed=0,
+        normal=(0, 0, 1),
+        cancelled=engine.never,
+    ):
         watch = Stopwatch()
         settings = abi.ReferenceSettings()
         library.ajar_reference_settings_init(c.byref(settings))
@@ -155,18 +165,18 @@ class Reference:
         settings.normal[:] = normal
         settings.weight_count = len(weights)
         settings.weights = np.ascontiguousarray(weights, np.float32).ctypes.data_as(abi.floats)
-        self.points, self.batches = _trace(library, scene.folder, settings)
+        self.points, self.batches = _trace(library, scene.folder, settings, cancelled)
         self.luminance = self.points["irradiance"] @ LUMINANCE
         self.stderr = self.points["standard_error"].astype(float)
         self.wall = watch.wall()
 
 
-def _trace(library, folder, settings):
+def _trace(library, folder, settings, cancelled):
     handle, batches = abi.Handle(), c.c_uint32()
     with engine.snapshot_scene(library, folder) as (scene, _):
         check(library, library.ajar_reference_start(scene, c.byref(settings), c.byref(handle)))
     try:
-        check(library, library.ajar_reference_wait(handle, -1.0))
+        check(library, engine.wait(library, "reference", handle, cancelled))
         array = (abi.ReferencePoint * settings.points)()
         check(library, library.ajar_reference_read(handle, array, settings.points, c.byref(batches)))
     finally:
@@ -174,15 +184,8 @@ def _trace(library, folder, settings):
     return np.array(np.ctypeslib.as_array(array)), batches.value
 
 
-def load(path):
-    """The engine library."""
-    return engine.load_library(str(path))
-
-
 def presets():
     """Settings of the presets by name."""
-    from blender_addon import model
-
     return {name.lower(): values for name, values in model.PRESETS.items()}
 
 

@@ -4,19 +4,26 @@ import contextlib
 import ctypes
 import functools
 import json
-import sys
 import time
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
-from blender_addon.bridge import abi, scene_builder  # noqa: E402
-from blender_addon.bridge.library import check, load_library  # noqa: E402
-from blender_addon.bridge.snapshot_io import Reader  # noqa: E402
+from ..bridge import abi, scene_builder
+from ..bridge.library import check, load_library
+from ..bridge.snapshot_io import Reader
+from ..bridge.worker import job_error
 
 LAYER_IRRADIANCE, LAYER_VALIDITY = 0, 3
+POLL_SECONDS = 0.1
+
+
+class Cancelled(Exception):
+    """Somebody asked to stop."""
+
+
+def never():
+    """Nobody asks to stop."""
+    return False
 
 
 @contextlib.contextmanager
@@ -31,19 +38,36 @@ def snapshot_scene(library, folder):
             builder.release()
 
 
+def wait(library, kind, handle, cancelled):
+    """Result of a 'job' or 'reference' once it has ended. cancelled() is asked while it runs; Cancelled is raised
+    when it has stopped."""
+    while True:
+        result = getattr(library, f"ajar_{kind}_wait")(handle, POLL_SECONDS)
+        if result == abi.CANCELLED:
+            raise Cancelled()
+        if result != abi.RUNNING:
+            return result
+        if cancelled():
+            getattr(library, f"ajar_{kind}_cancel")(handle)
+
+
 class Bake:
     """One finished bake of a snapshot. seconds is wall-clock from reading the files to finished pages."""
 
-    def __init__(self, library, folder, **settings):
+    def __init__(self, library, folder, cancelled=never, **settings):
         begin = time.perf_counter()
         self._library, self._job = library, abi.Handle()
         with snapshot_scene(library, folder) as (scene, data):
             self.pages = data["pages"]
             filled = scene_builder.fill_settings(library, {**data["settings"], **settings})
             check(library, library.ajar_job_start(scene, ctypes.byref(filled), ctypes.byref(self._job)))
-        result = library.ajar_job_wait(self._job, -1.0)
-        if result != abi.OK:
-            raise RuntimeError(f"the bake ended with {result}")
+        try:
+            result = wait(library, "job", self._job, cancelled)
+            if result != abi.OK:
+                raise job_error(library, self._job, result)
+        except BaseException:
+            self.close()
+            raise
         self.seconds = time.perf_counter() - begin
 
     def layer(self, page, which):

@@ -2,7 +2,7 @@
 """Which settings are tried: each knob on its own around the preset, and the presets themselves."""
 from dataclasses import dataclass, field
 
-import bakes
+from . import bakes
 
 PRESET = "preset"
 
@@ -52,8 +52,13 @@ def _presets(preset):
     ]
 
 
+def density_factors(quick):
+    """The texel densities tried, over the preset's."""
+    return (0.5, 2.0) if quick else (0.5, 0.71, 1.41, 2.0)
+
+
 def _density(density, quick):
-    steps = (0.5, 2.0) if quick else (0.5, 0.71, 1.41, 2.0)
+    steps = density_factors(quick)
     return [Trial("texels per metre", round(density * f, 2), {}, f, f * f) for f in steps]
 
 
