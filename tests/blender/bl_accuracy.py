@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# timeout: 400
+# timeout: 600
 """ajar.accuracy from a script: the page and its numbers, the file left as it was, and cancel."""
 import json
 import os
