@@ -12,7 +12,7 @@ import bpy
 import numpy
 from bpy.app.handlers import persistent
 
-from . import appearance, images
+from . import appearance, images, reload
 from .record import absolute_path, load_json, read_record
 from .sources import find_sources
 
@@ -28,6 +28,7 @@ class Session:
         self.elements = runtime.elements()
         self.sources = find_sources(scene, self.elements, warnings)
         self.looks = appearance.Looks(scene, self.sources)
+        self.reloader = reload.Reloader()
         for page in range(runtime.page_count()):
             images.make_live(page, runtime.page_size(page))
         images.make_live(images.MEAN, (1, 1))
@@ -53,6 +54,8 @@ class Session:
             images.fill(page, numpy.frombuffer(self.runtime.page_irradiance(page), dtype=numpy.float32))
         if len(pages):
             images.fill_mean(self.runtime.page_count())
+        for page in (*pages, images.MEAN) if len(pages) else ():
+            self.reloader.ask(images.find_live(page))
 
     def _push(self, depsgraph):
         """Hands the weights that differ from the last ones to the run time. True if any did."""
@@ -134,6 +137,12 @@ def resume():
 
 def _graph_changed(scene, depsgraph):
     if _session is not None and scene.ajar.preview:
+        _session.reloader.seen()
+        _session.refresh(depsgraph)
+
+
+def _frame_changed(scene, depsgraph):
+    if _session is not None and scene.ajar.preview:
         _session.refresh(depsgraph)
 
 
@@ -153,7 +162,7 @@ def _after_load(*_):
 
 _WHILE_ON = (
     (bpy.app.handlers.depsgraph_update_post, _graph_changed),
-    (bpy.app.handlers.frame_change_post, _graph_changed),
+    (bpy.app.handlers.frame_change_post, _frame_changed),
     (bpy.app.handlers.save_pre, _before_save),
 )
 _ALWAYS = (

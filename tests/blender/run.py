@@ -9,8 +9,10 @@ finds in its environment
     AJAR_ADDON_MODULE   name to import, `ajar`
     AJAR_TEST_DIR       an empty folder of its own
     AJAR_ROOT           the repository
-A script that names `# timeout: SECONDS` in its first 20 lines gets that much time. Exit code 77
-skips. The output of each script is kept in DIR/NAME.log.
+A script that names `# timeout: SECONDS` in its first 20 lines gets that much time; one that names
+`# window: WIDTHxHEIGHT` gets a Blender with its window, on a screen in memory of that size, and is
+skipped where Xvfb or xdotool is missing. Exit code 77 skips. The output of each script is kept in
+DIR/NAME.log.
 """
 import argparse
 import os
@@ -23,6 +25,8 @@ import time
 import xml.etree.ElementTree as ElementTree
 import zipfile
 from pathlib import Path
+
+from support import display
 
 FOLDER = Path(__file__).resolve().parent
 MODULE = "ajar"
@@ -52,9 +56,14 @@ def environment(work, scripts, own_folder):
     return variables
 
 
-def time_allowed(script, default):
+def named_in_head(script, pattern):
+    """Match of a line in the first lines of a script, or None."""
     head = "\n".join(script.read_text(encoding="utf-8").splitlines()[:20])
-    named = re.search(r"^# timeout: (\d+)", head, re.MULTILINE)
+    return re.search(pattern, head, re.MULTILINE)
+
+
+def time_allowed(script, default):
+    named = named_in_head(script, r"^# timeout: (\d+)")
     return int(named[1]) if named else default
 
 
@@ -63,9 +72,25 @@ def run_script(script, work, scripts, default_timeout):
     own_folder = work / script.stem
     shutil.rmtree(own_folder, ignore_errors=True)
     own_folder.mkdir(parents=True)
-    command = ["blender", "-b", "--factory-startup", "-noaudio", "--addons", MODULE]
-    command += ["--python-exit-code", "1", "-P", str(script)]
     log = work / f"{script.stem}.log"
+    variables = environment(work, scripts, own_folder)
+    allowed = time_allowed(script, default_timeout)
+    size = named_in_head(script, r"^# window: (\d+)x(\d+)")
+    if size is None:
+        code = run_blender(["-b"], script, variables, log, allowed)
+    elif display.missing():
+        return SKIPPED, display.missing()
+    else:
+        with display.display(own_folder, size.groups()) as screen:
+            arguments = display.blender_arguments(size.groups())
+            code = run_blender(arguments, script, {**variables, **screen}, log, allowed)
+    return code, log.read_text(encoding="utf-8", errors="replace")
+
+
+def run_blender(arguments, script, variables, log, allowed):
+    """Exit code of Blender with a script, None if it took more than the seconds allowed."""
+    command = ["blender", *arguments, "--factory-startup", "-noaudio", "--addons", MODULE]
+    command += ["--python-exit-code", "1", "-P", str(script)]
     with open(log, "wb") as output:
         process = subprocess.Popen(
             command,
@@ -73,16 +98,15 @@ def run_script(script, work, scripts, default_timeout):
             stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,
-            env=environment(work, scripts, own_folder),
-            cwd=own_folder,
+            env=variables,
+            cwd=variables["AJAR_TEST_DIR"],
         )
         try:
-            code = process.wait(time_allowed(script, default_timeout))
+            return process.wait(allowed)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-            code = None
-    return code, log.read_text(encoding="utf-8", errors="replace")
+            return None
 
 
 def failure_of(code, output):
@@ -104,7 +128,12 @@ def record(suite, name, seconds, code, reason, output):
         printable = "".join(c for c in output if c.isprintable() or c == "\n")
         ElementTree.SubElement(case, "failure", message=reason).text = printable[-4000:]
     elif code == SKIPPED:
-        ElementTree.SubElement(case, "skipped")
+        ElementTree.SubElement(case, "skipped", message=last_line(output))
+
+
+def last_line(output):
+    """What a script said last: why it skips."""
+    return output.strip().rpartition("\n")[2]
 
 
 def main():
@@ -129,7 +158,8 @@ def main():
         result = "failed" if reason else "skipped" if code == SKIPPED else "passed"
         counts[result] += 1
         record(suite, script.stem, seconds, code, reason, output)
-        print(f"{result:8}{script.stem} ({seconds:.1f} s){': ' + reason if reason else ''}", flush=True)
+        why = last_line(output) if code == SKIPPED else reason
+        print(f"{result:8}{script.stem} ({seconds:.1f} s){': ' + why if why else ''}", flush=True)
         if reason:
             print("\n".join("    " + line for line in output.splitlines()[-TAIL_LINES:]), flush=True)
     if options.junit:
