@@ -176,8 +176,7 @@ void Baker::gather_in_rounds() {
         pool_.for_each(
             rounds.size(round), progress_, [&](size_t k) { finish_tile(rounds.tile(round, k)); }, false);
         progress_.update(static_cast<float>(done += receivers) / static_cast<float>(s_.receivers.count()));
-        const double now = progress_.elapsed();
-        if (pace_->follow(receivers, now - start, settings_.time_limit - now, first_, goal_))
+        if (pace_->follow(receivers, progress_.elapsed() - start, time_left(), first_, goal_))
             result_.time_limited = true;
     }
 }
