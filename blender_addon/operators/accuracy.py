@@ -5,7 +5,7 @@ import os
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 from bpy.types import Operator
 
-from .. import accuracy_job, checks, job, settings
+from .. import accuracy_job, job, settings
 from ..accuracy import study
 from . import common
 
@@ -28,15 +28,9 @@ halving of the error costs, which setting buys most. Blender stays usable; Esc c
     )
     budget: FloatProperty(name="Budget", min=0.0, description="Seconds for all bakes, 0 for the usual time")
 
-    @classmethod
-    def poll(cls, context):
-        return common.poll_idle(cls, context)
-
     def execute(self, context):
         """Checks the scene, then runs the measurement."""
-        problems = checks.errors(checks.check_scene(context))
-        if problems:
-            self.report({"ERROR"}, "\n".join(map(str, problems)))
+        if not self.scene_is_fit(context):
             return {"CANCELLED"}
         given = {name: getattr(self, name) or None for name in study.QUICK}
         options = {

@@ -2,7 +2,7 @@
 """ajar.bake, ajar.cancel, ajar.clear."""
 from bpy.types import Operator
 
-from .. import checks, job, settings
+from .. import job, settings
 from ..apply import clear
 from . import common
 
@@ -13,15 +13,9 @@ class AJAR_OT_bake(common.JobOperator, Operator):
     bl_idname = "ajar.bake"
     bl_label = "Bake Lightmaps"
 
-    @classmethod
-    def poll(cls, context):
-        return common.poll_idle(cls, context)
-
     def execute(self, context):
         """Checks the scene, then runs the job."""
-        problems = checks.errors(checks.check_scene(context))
-        if problems:
-            self.report({"ERROR"}, "\n".join(map(str, problems)))
+        if not self.scene_is_fit(context):
             return {"CANCELLED"}
         package, report = settings.output_paths(context.scene)
         keep = context.scene.ajar.keep_uvs

@@ -4,7 +4,7 @@ import time
 
 import bpy
 
-from .. import job
+from .. import checks, job
 
 STEP = 0.05  # seconds between steps without a user interface
 
@@ -49,6 +49,17 @@ class JobOperator:
 
     _timer = None
     _status = None
+
+    @classmethod
+    def poll(cls, context):
+        return poll_idle(cls, context)
+
+    def scene_is_fit(self, context, **asked):
+        """Whether nothing keeps the scene from being baked; reports what does. asked: as checks.check_scene takes it."""
+        problems = checks.errors(checks.check_scene(context, **asked))
+        if problems:
+            self.report({"ERROR"}, "\n".join(map(str, problems)))
+        return not problems
 
     def start(self, context, new_job):
         """Starts a job: to its end without a user interface, else modal."""

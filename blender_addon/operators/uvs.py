@@ -3,7 +3,7 @@
 from bpy.props import BoolProperty
 from bpy.types import Operator
 
-from .. import checks, job
+from .. import job
 from . import common
 
 
@@ -20,10 +20,6 @@ Other UV layers stay as they are"""
         description="Keep the charts of existing AjarLightmap layers and only pack them anew",
     )
 
-    @classmethod
-    def poll(cls, context):
-        return common.poll_idle(cls, context)
-
     def invoke(self, context, _event):
         """Takes the scene's choice unless a script gave one."""
         if not self.properties.is_property_set("keep_existing"):
@@ -32,9 +28,7 @@ Other UV layers stay as they are"""
 
     def execute(self, context):
         """Checks the scene, then runs the layout."""
-        problems = checks.errors(checks.check_scene(context, output=False))
-        if problems:
-            self.report({"ERROR"}, "\n".join(map(str, problems)))
+        if not self.scene_is_fit(context, output=False):
             return {"CANCELLED"}
         return self.start(
             context, job.Job("Lightmap UVs", context, job.layout_steps, keep_existing=self.keep_existing)

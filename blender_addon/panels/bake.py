@@ -157,9 +157,4 @@ class AJAR_PT_render_more(Properties, Panel):
         layout.operator("ajar.clear", icon="TRASH")
 
 
-CLASSES = (
-    AJAR_PT_sidebar,
-    AJAR_PT_sidebar_last,
-    AJAR_PT_render,
-    AJAR_PT_render_more,
-)
+CLASSES = (AJAR_PT_sidebar, AJAR_PT_sidebar_last, AJAR_PT_render, AJAR_PT_render_more)
