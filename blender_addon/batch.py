@@ -20,6 +20,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 DONE, FAILED, CANCELLED = 0, 1, 2
 PRESETS = ("draft", "preview", "production", "reference")
 COMBINATIONS = ("none", "auto", "all")
+LIGHT_PATCHES = ("none", "mono", "rgb")
 
 
 class BatchError(Exception):
@@ -47,6 +48,12 @@ def parse(arguments):
     parser.add_argument("--seed", type=_count_or_none, metavar="N", help="seed of the random numbers")
     parser.add_argument(
         "--combinations", choices=COMBINATIONS, type=str.lower, help="products of elements to bake"
+    )
+    parser.add_argument(
+        "--light-patches",
+        choices=LIGHT_PATCHES,
+        type=str.lower,
+        help="plain textures to blend, beside terms.bin",
     )
     parser.add_argument(
         "--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers"
@@ -105,6 +112,7 @@ def overrides(options):
         "seed": options.seed,
         "texels_per_meter": options.density,
         "combinations": options.combinations.upper() if options.combinations else None,
+        "light_patches": options.light_patches.upper() if options.light_patches else None,
     }
     return {name: value for name, value in values.items() if value is not None}
 

@@ -143,6 +143,19 @@ ENGINE_FIELDS = (
         "Random texels at which brute force checks the finished bake; 0: no check",
         "Self-check",
     ),
+    Field(
+        "light_patches",
+        "enum",
+        "NONE",
+        description="Also store a texture per light and per shadow of an object, for engines that blend plain "
+        "textures: shadows of two objects that overlap are taken twice there",
+        label="Light patches",
+        items=(
+            ("NONE", "None", "No light patches"),
+            ("MONO", "Mono", "Luminance of each light set, and one colour for it"),
+            ("RGB", "RGB", "Colour of each light set at every texel, at three times the size"),
+        ),
+    ),
 )
 
 # Fields of ajar_layout_settings, in the order of the struct.
@@ -211,6 +224,7 @@ SCENE_FIELDS = (
     ),
     _BY_NAME["combinations"],
     _BY_NAME["term_threshold"],
+    _BY_NAME["light_patches"],
 )
 
 OBJECT_FIELDS = (

@@ -18,6 +18,7 @@ _FROM_SCENE = (
     "keep_sh",
     "combinations",
     "term_threshold",
+    "light_patches",
 )
 
 

@@ -24,6 +24,8 @@ VISIBLE = {"gather": 1, "shadow": 2}
 LIGHT = {"point": 0, "spot": 1, "sun": 2, "rectangle": 3, "ellipse": 4}
 ELEMENT = {"light_set": 0, "door": 1, "toggle": 2}
 COMBINATIONS = {"NONE": 0, "AUTO": 1, "ALL": 2}
+LIGHT_PATCHES = {"NONE": 0, "MONO": 1, "RGB": 2}
+CHOICES = {"combinations": COMBINATIONS, "light_patches": LIGHT_PATCHES}
 ROLE = {"primary": 0, "static": 1}
 CHOICE = {"area": 0, "texel": 1}
 SKY = {"none": 0, "constant": 1, "equirect": 2}
@@ -176,6 +178,7 @@ class Settings(c.Structure):
         ("term_threshold", f32),
         ("door_rays", f32),
         ("check_points", u32),
+        ("light_patches", u32),
     ]
 
 

@@ -49,6 +49,19 @@ class Rect(c.Structure):
     _fields_ = [("x", u32), ("y", u32), ("width", u32), ("height", u32)]
 
 
+class Patch(c.Structure):
+    _fields_ = [
+        ("struct_size", u32),
+        ("page_x", u32),
+        ("page_y", u32),
+        ("width", u32),
+        ("height", u32),
+        ("atlas_x", u32),
+        ("atlas_y", u32),
+        ("channel", u32),
+    ]
+
+
 class Buffers(c.Structure):
     _fields_ = [
         ("struct_size", u32),
@@ -77,6 +90,7 @@ STRUCTS = {
     "ajar_runtime_element": ElementInfo,
     "ajar_runtime_stats": Stats,
     "ajar_runtime_rect": Rect,
+    "ajar_runtime_patch": Patch,
     "ajar_runtime_buffers": Buffers,
     "ajar_runtime_work": Work,
 }
@@ -104,6 +118,8 @@ FUNCTIONS = {
     "ajar_runtime_page_dirty": (Result, [Handle, u32, P(Rect)]),
     "ajar_runtime_page_texels": (Result, [Handle, u32, P(uints), P(uints)]),
     "ajar_runtime_read_irradiance": (Result, [Handle, u32, u32, floats, u64]),
+    "ajar_runtime_patch_init": (None, [P(Patch)]),
+    "ajar_runtime_add_patch": (Result, [P(Patch), P(c.c_uint16), u32, u32, floats, floats, u32, u32]),
     "ajar_runtime_buffers_init": (None, [P(Buffers)]),
     "ajar_runtime_get_buffers": (Result, [Handle, P(Buffers)]),
     "ajar_runtime_work_init": (None, [P(Work)]),

@@ -190,18 +190,18 @@ def fill_settings(library, values, kind="settings"):
         if key == "struct_size" or not hasattr(settings, key):
             raise BakeError(abi.ERROR_ARGUMENT, f"unknown setting {key}", "settings")
         try:
-            setattr(settings, key, _number(value))
+            setattr(settings, key, _number(key, value))
         except (TypeError, ValueError) as error:
             raise BakeError(abi.ERROR_ARGUMENT, f"{key}: {error}", "settings") from error
     return settings
 
 
-def _number(value):
+def _number(key, value):
     """A setting as ctypes takes it: words of an enum and booleans become numbers."""
     if isinstance(value, str):
-        if value not in abi.COMBINATIONS:
+        if value not in abi.CHOICES.get(key, {}):
             raise ValueError(f"no such choice: {value}")
-        return abi.COMBINATIONS[value]
+        return abi.CHOICES[key][value]
     return int(value) if isinstance(value, bool) else value
 
 

@@ -149,6 +149,7 @@ class AJAR_PT_render_more(Properties, Panel):
             "keep_sh",
             "combinations",
             "term_threshold",
+            "light_patches",
             "seed",
             "threads",
         ):

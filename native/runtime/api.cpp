@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "error.h"
+#include "light_patch.h"
 #include "runtime.h"
 
 namespace {
@@ -273,6 +274,18 @@ ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime runtime, uint32_t 
     return guarded([&] {
         const auto r = handles().get(runtime);
         read_irradiance(page_of(*r, page), channels, buffer, float_count);
+    });
+}
+
+void ajar_runtime_patch_init(ajar_runtime_patch* patch) { init_struct(patch); }
+
+ajar_runtime_result ajar_runtime_add_patch(const ajar_runtime_patch* patch, const uint16_t* atlas, uint32_t atlas_width,
+                                           uint32_t atlas_height, const float factor[3], float* light, uint32_t width,
+                                           uint32_t height) {
+    return guarded([&] {
+        checked(patch);
+        required(atlas), required(factor), required(light);
+        add_patch(*patch, atlas, atlas_width, atlas_height, factor, light, width, height);
     });
 }
 

@@ -257,6 +257,7 @@ ajar_result Fuzzer::start_job() {
     s.time_limit = chance(0.9) ? 0.0f : scalar();
     s.threads = chance(0.9) ? 1 : integer();
     s.keep_sh = pick(2);
+    s.light_patches = pick(4);
     s.keep_bounces = pick(2);
     s.stitch_seams = pick(2);
     ajar_job job = nullptr;

@@ -26,6 +26,7 @@ SCENE = {
     "light_sets",
     "combinations",
     "term_threshold",
+    "light_patches",
 }
 LIGHT_SET = {"name", "weight", "color", "combine"}
 COLLECTION = {

@@ -129,6 +129,7 @@ def test_numbers(header):
         "SKY": abi.SKY,
         "ELEMENT": abi.ELEMENT,
         "COMBINATIONS": abi.COMBINATIONS,
+        "LIGHT_PATCHES": abi.LIGHT_PATCHES,
         "CHOICE": abi.CHOICE,
     }
     for prefix, table in words.items():

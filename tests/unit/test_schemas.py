@@ -7,7 +7,7 @@ import jsonschema
 import pytest
 
 SCHEMAS = Path(__file__).resolve().parents[2] / "schemas"
-NAMES = ("layout", "manifest", "report", "snapshot")
+NAMES = ("layout", "manifest", "patches", "report", "snapshot")
 
 
 def load(name):

@@ -253,6 +253,11 @@ AJAR_API ajar_result ajar_scene_warning(ajar_scene scene, uint32_t index, char* 
 enum { AJAR_COMBINATIONS_NONE = 0, AJAR_COMBINATIONS_AUTO = 1, AJAR_COMBINATIONS_ALL = 2 };
 #define AJAR_MAX_TERM_ELEMENTS 4u
 
+/* Whether the package also holds plain textures to blend, after "Semi-Dynamic Light Maps": a map per
+ * light and per object that shadows it, cut into patches in RGBA16F atlases (patches.json). MONO: the
+ * maps of light sets are luminance with one colour per set, as in the paper; RGB: they keep colour. */
+enum { AJAR_LIGHT_PATCHES_NONE = 0, AJAR_LIGHT_PATCHES_MONO = 1, AJAR_LIGHT_PATCHES_RGB = 2 };
+
 typedef struct ajar_settings {
     uint32_t struct_size;
     uint32_t bounces;             /* diffuse bounces of every light; 0 = direct only */
@@ -263,16 +268,17 @@ typedef struct ajar_settings {
     uint32_t direct_samples;      /* shadow rays per texel in the final pass when noise_target is 0, else the cap */
     uint32_t positions_per_texel; /* 1..16 */
     uint32_t seed;
-    uint32_t threads;      /* 0 = all */
-    uint32_t stitch_seams; /* 1: least-squares seam stitching */
-    uint32_t keep_sh;      /* 1: keep 9-coefficient SH layers */
-    uint32_t keep_bounces; /* 1: keep the irradiance of every bounce apart (tests) */
-    uint32_t combinations; /* AJAR_COMBINATIONS_* */
-    float term_threshold;  /* a texel keeps a term if lit by it directly or brighter than this share
-                              of the term's mean indirect light there; 0 keeps all */
-    float door_rays;       /* final rays that aim at each door in sight, as a share of those over the
-                              hemisphere; 0..1, 0 = none */
-    uint32_t check_points; /* random texels at which brute force checks the finished bake; 0 = none, the default */
+    uint32_t threads;       /* 0 = all */
+    uint32_t stitch_seams;  /* 1: least-squares seam stitching */
+    uint32_t keep_sh;       /* 1: keep 9-coefficient SH layers */
+    uint32_t keep_bounces;  /* 1: keep the irradiance of every bounce apart (tests) */
+    uint32_t combinations;  /* AJAR_COMBINATIONS_* */
+    float term_threshold;   /* a texel keeps a term if lit by it directly or brighter than this share
+                               of the term's mean indirect light there; 0 keeps all */
+    float door_rays;        /* final rays that aim at each door in sight, as a share of those over the
+                               hemisphere; 0..1, 0 = none */
+    uint32_t check_points;  /* random texels at which brute force checks the finished bake; 0 = none, the default */
+    uint32_t light_patches; /* AJAR_LIGHT_PATCHES_* */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

@@ -152,6 +152,30 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime r
                                                                   uint32_t channels, float* buffer,
                                                                   uint64_t float_count);
 
+/* ---- light patches ------------------------------------------------------------------------ */
+
+/* A package can also hold the layout of "Semi-Dynamic Light Maps" (patches.json), for engines that
+ * blend plain textures. This is all that it takes on a processor, apart from any runtime: */
+
+/* A patch as patches.json lists it. */
+typedef struct ajar_runtime_patch {
+    uint32_t struct_size;
+    uint32_t page_x, page_y, width, height;
+    uint32_t atlas_x, atlas_y, channel;
+} ajar_runtime_patch;
+AJAR_RUNTIME_API void ajar_runtime_patch_init(ajar_runtime_patch* patch);
+/* light += factor * patch. atlas: the texels of its DDS file, [atlas_height][atlas_width][4] half
+ * floats; light: [height][width][3] floats, the page that the patch belongs to, top row first.
+ * Sums are linear, so with the map's scale and colour in factor this is each of the paper's steps:
+ * factor 1 on black copies a map together (algorithms 5, 6), intensity adds a light (7), - intensity
+ * takes an object's shadow off (3.3.3), new less old intensity updates it (8, 9). Cut negative light to 0
+ * once, where the page is packed. Fails without a change for a patch that does not fit or a factor
+ * that is not finite. */
+AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_add_patch(const ajar_runtime_patch* patch, const uint16_t* atlas,
+                                                            uint32_t atlas_width, uint32_t atlas_height,
+                                                            const float factor[3], float* light, uint32_t width,
+                                                            uint32_t height);
+
 /* ---- update on a graphics card ------------------------------------------------------------ */
 
 /* What ajar_terms.comp reads, for buffers that are filled once. Valid until release. */

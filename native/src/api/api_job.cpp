@@ -22,6 +22,7 @@ ajar_settings checked_settings(const ajar_settings* settings) {
     if (s.direct_samples == 0 || s.direct_samples > (1u << 20)) fail("direct_samples must lie in 1..1048576");
     if (s.positions_per_texel == 0 || s.positions_per_texel > 16) fail("positions_per_texel must lie in 1..16");
     if (s.combinations > AJAR_COMBINATIONS_ALL) fail("combinations has an unknown value");
+    if (s.light_patches > AJAR_LIGHT_PATCHES_RGB) fail("light_patches has an unknown value");
     if (!(s.term_threshold >= 0.0f) || s.term_threshold > 1.0f) fail("term_threshold must lie in 0..1");
     if (!(s.door_rays >= 0.0f) || s.door_rays > 1.0f) fail("door_rays must lie in 0..1");
     if (s.check_points > (1u << 20)) fail("check_points must be 1048576 at most");
@@ -246,6 +247,7 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
         if (extras != nullptr)
             content.extras =
                 *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
+        content.light_patches = static_cast<LightPatchPlanes>(j->settings().light_patches);
         write_package(content, directory);
         return AJAR_OK;
     });

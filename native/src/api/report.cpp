@@ -23,6 +23,7 @@ json settings_json(const ajar_settings& s) {
             {"term_threshold", s.term_threshold},
             {"door_rays", s.door_rays},
             {"check_points", s.check_points},
+            {"light_patches", s.light_patches},
             {"seed", s.seed},
             {"threads", s.threads},
             {"stitch_seams", s.stitch_seams != 0},

@@ -51,7 +51,8 @@ uint32_t get_word(std::span<const uint8_t> bytes, size_t word) {
 } // namespace
 
 std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat format, std::span<const uint32_t> texels) {
-    if (width == 0 || height == 0 || texels.size() != size_t(width) * height)
+    const size_t row = size_t(width) * words_per_texel(format);
+    if (width == 0 || height == 0 || texels.size() != row * height)
         throw Error(AJAR_ERROR_ARGUMENT, "DDS image size and texel count differ");
     std::vector<uint8_t> bytes((kWordCount + texels.size()) * 4, 0);
     put_word(bytes, kWordMagic, kMagic);
@@ -59,7 +60,7 @@ std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat forma
     put_word(bytes, kWordFlags, kHeaderFlags);
     put_word(bytes, kWordHeight, height);
     put_word(bytes, kWordWidth, width);
-    put_word(bytes, kWordPitch, width * 4);
+    put_word(bytes, kWordPitch, static_cast<uint32_t>(row) * 4);
     put_word(bytes, kWordDepth, 1);
     put_word(bytes, kWordMips, 1);
     put_word(bytes, kWordPixelSize, 32);
@@ -70,8 +71,7 @@ std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat forma
     put_word(bytes, kWordDimension, kDimension2d);
     put_word(bytes, kWordArraySize, 1);
     for (size_t y = 0; y < height; ++y)
-        for (size_t x = 0; x < width; ++x)
-            put_word(bytes, kWordCount + (height - 1 - y) * width + x, texels[y * width + x]);
+        for (size_t x = 0; x < row; ++x) put_word(bytes, kWordCount + (height - 1 - y) * row + x, texels[y * row + x]);
     return bytes;
 }
 
@@ -86,14 +86,16 @@ DdsImage decode_dds(std::span<const uint8_t> bytes, const std::string& name) {
     image.width = get_word(bytes, kWordWidth);
     image.height = get_word(bytes, kWordHeight);
     image.format = static_cast<DdsFormat>(get_word(bytes, kWordFormat));
-    if (image.format != DdsFormat::kR11G11B10Float && image.format != DdsFormat::kR8G8B8A8Unorm) refuse("other format");
+    if (image.format != DdsFormat::kR16G16B16A16Float && image.format != DdsFormat::kR11G11B10Float &&
+        image.format != DdsFormat::kR8G8B8A8Unorm)
+        refuse("other format");
     if (image.width == 0 || image.height == 0 || std::max(image.width, image.height) > kLargestEdge) refuse("bad size");
-    const size_t count = size_t(image.width) * image.height;
+    const size_t row = size_t(image.width) * words_per_texel(image.format), count = row * image.height;
     if (bytes.size() != (kWordCount + count) * 4) refuse("its length does not match its size");
     image.texels.resize(count);
     for (size_t y = 0; y < image.height; ++y)
-        for (size_t x = 0; x < image.width; ++x)
-            image.texels[y * image.width + x] = get_word(bytes, kWordCount + (image.height - 1 - y) * image.width + x);
+        for (size_t x = 0; x < row; ++x)
+            image.texels[y * row + x] = get_word(bytes, kWordCount + (image.height - 1 - y) * row + x);
     return image;
 }
 

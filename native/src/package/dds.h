@@ -8,8 +8,11 @@
 
 namespace ajar {
 
-/// The 32 bit formats of packed lightmap pages; values are DXGI_FORMAT's.
-enum class DdsFormat : uint32_t { kR11G11B10Float = 26, kR8G8B8A8Unorm = 28 };
+/// The 32 bit formats of packed lightmap pages, and the 64 bit one of light patches; values are DXGI_FORMAT's.
+enum class DdsFormat : uint32_t { kR16G16B16A16Float = 10, kR11G11B10Float = 26, kR8G8B8A8Unorm = 28 };
+
+/// 32 bit words of a texel.
+constexpr uint32_t words_per_texel(DdsFormat format) { return format == DdsFormat::kR16G16B16A16Float ? 2 : 1; }
 
 /// A single 2D image without mip maps.
 struct DdsImage {

@@ -55,6 +55,12 @@ struct PackageTerm {
     std::span<const uint32_t> direction; ///< [count] RGBA8 as in packed_direction, of irradiance / its sign
 };
 
+inline constexpr const char* kLightPatchesFile = "patches.json";
+
+/// Whether the layout of semi-dynamic light maps is written beside terms.bin (light_patches.h), and
+/// how many planes the maps of light sets have there: luminance with one colour per set, or RGB.
+enum class LightPatchPlanes : uint32_t { none = 0, one = 1, three = 2 };
+
 /// All that a package holds.
 struct PackageContent {
     std::string name;
@@ -64,6 +70,7 @@ struct PackageContent {
     std::vector<PackageLight> lights;
     std::vector<PackageElement> elements;
     std::vector<PackageTerm> terms;
+    LightPatchPlanes light_patches = LightPatchPlanes::none;
 };
 
 /// Dispatches of one class of terms.bin (native/runtime/terms_format.h).

@@ -8,6 +8,7 @@
 #include "package/dds.h"
 #include "package/file_io.h"
 #include "package/image_io.h"
+#include "package/light_patches.h"
 #include "package/terms_file.h"
 #include "runtime/terms_format.h"
 
@@ -71,14 +72,34 @@ void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
     write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
 }
 
-/// "page_<number>.<rest>", the terms and the manifest are Ajar's; everything else is someone else's.
+void write_text(const fs::path& path, const std::string& text) {
+    write_file_synced(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+void write_light_patches(const PackageContent& content, const fs::path& folder) {
+    const LightPatches patches = make_light_patches(content, content.light_patches);
+    for (size_t a = 0; a < patches.atlases.size(); ++a)
+        write_file_synced(folder / atlas_file(a), encode_dds(patches.atlases[a].width, patches.atlases[a].height,
+                                                             DdsFormat::kR16G16B16A16Float, patches.texels[a]));
+    write_text(folder / kLightPatchesFile, light_patches_json(content, patches));
+}
+
+/// The place of the dot in "<stem><number>.<rest>"; npos for other names.
+size_t dot_after_number(const std::string& name, const std::string& stem) {
+    const size_t dot = name.find('.');
+    const bool fits = dot != std::string::npos && dot > stem.size() && name.rfind(stem, 0) == 0 &&
+                      std::all_of(name.begin() + long(stem.size()), name.begin() + long(dot),
+                                  [](char c) { return c >= '0' && c <= '9'; });
+    return fits ? dot : std::string::npos;
+}
+
+/// "page_<number>.<rest>", light patches, the terms and the manifest are Ajar's; everything else is someone else's.
 bool is_own_file(const std::string& name) {
-    if (name == kManifest || name == terms::kFileName) return true;
-    if (name.rfind("page_", 0) != 0) return false;
-    const size_t dot = name.find('.', 5);
-    if (dot == std::string::npos || dot == 5 ||
-        !std::all_of(name.begin() + 5, name.begin() + long(dot), [](char c) { return c >= '0' && c <= '9'; }))
-        return false;
+    if (name == kManifest || name == terms::kFileName || name == kLightPatchesFile) return true;
+    const size_t atlas_dot = dot_after_number(name, "patches_");
+    if (atlas_dot != std::string::npos) return name.substr(atlas_dot) == ".dds";
+    const size_t dot = dot_after_number(name, "page_");
+    if (dot == std::string::npos) return false;
     const PageFiles files(0);
     const std::string rest = "page_0" + name.substr(dot);
     return rest == files.irradiance || rest == files.quality || rest == files.sh || rest == files.packed_irradiance ||
@@ -121,7 +142,8 @@ void write_package(const PackageContent& content, const fs::path& directory) {
     const auto fill = [&](const fs::path& folder) {
         for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, folder);
         if (terms_file) write_file_synced(folder / terms::kFileName, terms_file->bytes);
-        write_file_synced(folder / kManifest, {reinterpret_cast<const uint8_t*>(manifest.data()), manifest.size()});
+        if (content.light_patches != LightPatchPlanes::none) write_light_patches(content, folder);
+        write_text(folder / kManifest, manifest);
     };
     const auto accept_existing = [&](const fs::path& existing, const fs::path* temporary) {
         if (temporary)
