@@ -112,6 +112,25 @@ TEST(LightPatches, OnePlaneKeepsLuminance) {
     expect_equal(got, wanted);
 }
 
+TEST(LightPatches, BlackPagesKeepTheMapOfNoSet) {
+    kit::TermScene scene;
+    scene.add_page(8, 8);
+    const std::vector<float> black(3 * 64, 0.0f);
+    scene.content.pages[0].irradiance = black;
+    const LightPatches patches = make_light_patches(scene.content, LightPatchPlanes::one);
+    ASSERT_EQ(patches.maps.size(), 1u);
+    EXPECT_TRUE(patches.maps[0].patches.empty());
+    EXPECT_TRUE(patches.atlases.empty());
+}
+
+TEST(LightPatches, NamesThatAreNotUtf8AreReplacedAsInTheManifest) {
+    kit::TermScene scene;
+    scene.add_page(8, 8);
+    scene.add_element("lamp \xff", "light_set");
+    const LightPatches patches = make_light_patches(scene.content, LightPatchPlanes::one);
+    EXPECT_NE(light_patches_json(scene.content, patches).find("lamp \xef\xbf\xbd"), std::string::npos);
+}
+
 TEST(LightPatches, NoTexelOfAnAtlasBelongsToTwoPatches) {
     std::vector<PatchSize> sizes;
     kit::TermScene random(3);

@@ -7,12 +7,12 @@
 
 #include "base/math.h"
 #include "encode/ahd.h"
+#include "package/dispatch_plan.h"
 
 namespace ajar {
 namespace {
 
-constexpr uint32_t kBlock = 64;         ///< texels along an edge of the blocks that patches are cut from
-constexpr float kLargestStored = 32768; ///< half floats go on to 65504
+constexpr uint32_t kBlock = 64; ///< texels along an edge of the blocks that patches are cut from
 
 /// Light at a texel, counted over all pages.
 struct TexelLight {
@@ -109,13 +109,10 @@ float plane_value(const Vec3& e, uint32_t planes, uint32_t plane) {
     return planes == 1 ? luminance(e) : e[static_cast<int>(plane)];
 }
 
-/// The power of two that brings a map's largest value under kLargestStored.
 float scale_of(const MapLight& light) {
     float largest = 0.0f;
     for (const auto& [texel, e] : light) largest = std::max({largest, std::fabs(e.x), std::fabs(e.y), std::fabs(e.z)});
-    int exponent = 0;
-    std::frexp(largest, &exponent);
-    return largest > 0.0f ? std::ldexp(kLargestStored, std::clamp(exponent, -110, 127) - 30) : 1.0f;
+    return storage_scale(largest);
 }
 
 struct Box {
@@ -136,9 +133,11 @@ class Cutter {
 public:
     Cutter(const PackageContent& content, LightPatches& out) : content_(content), out_(out) {}
 
+    /// Adds the map with its patches; a black one only if it is the light that no set holds.
     void cut(LightMap map, const MapLight& light) {
         for (uint32_t plane = 0; plane < map.planes; ++plane) cut_plane(map, light, plane);
-        if (map.patches.empty()) return;
+        const bool is_base = map.light == LightPatches::kNone && map.object == LightPatches::kNone;
+        if (map.patches.empty() && !is_base) return;
         for (size_t p = 0; p < map.patches.size(); ++p) jobs.push_back({out_.maps.size(), p, &light});
         out_.maps.push_back(std::move(map));
     }
@@ -147,14 +146,10 @@ public:
 private:
     void cut_plane(LightMap& map, const MapLight& light, uint32_t plane) {
         std::map<std::array<uint32_t, 3>, Box> boxes; // of page, block row, block column
-        uint32_t page = 0, first = 0;
         for (const auto& [texel, e] : light) {
-            while (texel - first >= content_.pages[page].width * content_.pages[page].height)
-                first += content_.pages[page].width * content_.pages[page].height, ++page;
             if ((pack_half(plane_value(e, map.planes, plane) / map.scale) & 0x7fffu) == 0) continue;
-            const uint32_t x = (texel - first) % content_.pages[page].width;
-            const uint32_t y = (texel - first) / content_.pages[page].width;
-            boxes[{page, y / kBlock, x / kBlock}].add(x, y);
+            const TexelPlace p = place_of(content_.pages, texel);
+            boxes[{p.page, p.y / kBlock, p.x / kBlock}].add(p.x, p.y);
         }
         for (const auto& [at, b] : boxes)
             map.patches.push_back({{}, {b.x1 - b.x0 + 1, b.y1 - b.y0 + 1}, at[0], b.x0, b.y0, plane});
@@ -175,9 +170,9 @@ void write_patch(const PackageContent& content, const LightMap& map, const Light
     const uint32_t stride = out.atlases[patch.place.atlas].width;
     std::vector<uint32_t>& words = out.texels[patch.place.atlas];
     const uint32_t shift = 16 * (patch.place.channel & 1), half = patch.place.channel / 2;
+    const uint32_t first = first_texel(content, patch.page);
     for (uint32_t y = 0; y < patch.size.height; ++y) {
-        const uint32_t row =
-            first_texel(content, patch.page) + (patch.y + y) * content.pages[patch.page].width + patch.x;
+        const uint32_t row = first + (patch.y + y) * content.pages[patch.page].width + patch.x;
         const auto begin =
             std::partition_point(light.begin(), light.end(), [&](const TexelLight& l) { return l.texel < row; });
         for (auto it = begin; it != light.end() && it->texel < row + patch.size.width; ++it) {

@@ -63,7 +63,7 @@ std::string light_patches_json(const PackageContent& content, const LightPatches
     json["maps"] = Json::array();
     for (const LightMap& map : patches.maps) json["maps"].push_back(map_json(content, patches, map));
     json["dropped_terms"] = patches.dropped_terms;
-    return json.dump(1) + "\n";
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; // names as in the manifest
 }
 
 } // namespace ajar

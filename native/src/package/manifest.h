@@ -55,7 +55,7 @@ struct PackageTerm {
     std::span<const uint32_t> direction; ///< [count] RGBA8 as in packed_direction, of irradiance / its sign
 };
 
-inline constexpr const char* kLightPatchesFile = "patches.json";
+inline constexpr const char* kLightPatchesFile = "patches.json"; ///< beside manifest.json
 
 /// Whether the layout of semi-dynamic light maps is written beside terms.bin (light_patches.h), and
 /// how many planes the maps of light sets have there: luminance with one colour per set, or RGB.

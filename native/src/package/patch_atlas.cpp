@@ -15,25 +15,24 @@ uint64_t area(const PatchSize& s) { return uint64_t{s.width} * s.height; }
 class ChannelPacker {
 public:
     bool insert(const PatchSize& atlas, const PatchSize& patch, PatchPlace& place) {
-        for (Shelf& shelf : shelves_)
-            if (patch.height <= shelf.height && patch.width <= atlas.width - shelf.used)
-                return put(shelf, patch, place);
-        if (patch.height > atlas.height - top_ || patch.width > atlas.width) return false;
-        shelves_.push_back({top_, patch.height, 0});
-        top_ += patch.height;
-        return put(shelves_.back(), patch, place);
+        auto shelf = std::find_if(shelves_.begin(), shelves_.end(), [&](const Shelf& s) {
+            return patch.height <= s.height && patch.width <= atlas.width - s.used;
+        });
+        if (shelf == shelves_.end()) {
+            if (patch.height > atlas.height - top_ || patch.width > atlas.width) return false;
+            shelf = shelves_.insert(shelf, {top_, patch.height, 0});
+            top_ += patch.height;
+        }
+        place.x = shelf->used;
+        place.y = shelf->y;
+        shelf->used += patch.width;
+        return true;
     }
 
 private:
     struct Shelf {
         uint32_t y, height, used;
     };
-    static bool put(Shelf& shelf, const PatchSize& patch, PatchPlace& place) {
-        place.x = shelf.used;
-        place.y = shelf.y;
-        shelf.used += patch.width;
-        return true;
-    }
     std::vector<Shelf> shelves_;
     uint32_t top_ = 0;
 };

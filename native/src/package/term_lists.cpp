@@ -68,9 +68,7 @@ StoredTerm make_stored(const PackageTerm& term) {
         largest = std::max(largest, std::fabs(v));
         s.is_signed |= v < 0.0f;
     }
-    int exponent = 0;
-    std::frexp(largest, &exponent); // largest = m * 2^exponent, m in [0.5, 1)
-    if (largest > 0.0f) s.scale = std::ldexp(1.0f, std::clamp(exponent - 15, -126, 127));
+    s.scale = storage_scale(largest);
     return s;
 }
 
@@ -154,6 +152,12 @@ void thin_crowded(const PackageContent& content, TermLists& lists) {
 }
 
 } // namespace
+
+float storage_scale(float largest) {
+    int exponent = 0;
+    std::frexp(largest, &exponent); // largest = m * 2^exponent, m in [0.5, 1)
+    return largest > 0.0f ? std::ldexp(1.0f, std::clamp(exponent - 15, -126, 127)) : 1.0f;
+}
 
 std::array<uint32_t, 3> entry_words(const PackageTerm& term, const StoredTerm& stored, size_t index,
                                     bool signed_layout) {

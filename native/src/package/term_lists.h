@@ -17,6 +17,9 @@ struct StoredTerm {
     uint32_t texels = 0; ///< that keep it
 };
 
+/// The power of two that brings the largest magnitude into [2^14, 2^15); 1 for 0.
+float storage_scale(float largest);
+
 /// The terms of every texel: an entry names a term and its place in the term's arrays. Entries of a
 /// texel ascend by term.
 struct TermLists {
