@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <numbers>
 
@@ -240,6 +241,38 @@ TEST(Linearity, SeedsChangeTheNoiseNotTheMean) {
     EXPECT_LT(z, 1.6);
     EXPECT_GT(z, 0.4) << "the standard error is overstated, or the seed has no effect";
     EXPECT_NEAR(valid_mean(a), valid_mean(b), 4.0 * std::hypot(mean_error(a), mean_error(b)) + 0.003 * valid_mean(a));
+}
+
+// ---- storage ---------------------------------------------------------------------------------
+
+/// A small lamp close to the wall of a sphere whose every edge is a seam of its lightmap.
+void seamed_sphere(kit::Scene& scene) {
+    scene.instance(scene.mesh(kit::sphere_inside(1.0f, 2)), scene.diffuse({0.5f, 0.5f, 0.5f}), scene.page(128, 128));
+    scene.point_light({0.9f, 0, 0}, 100.0f, 0.01f);
+    scene.commit();
+}
+
+uint32_t bits_of(float v) {
+    uint32_t out;
+    std::memcpy(&out, &v, sizeof out);
+    return out;
+}
+
+TEST(Stitching, ChangesTheBrightnessNotTheDirectionOfALight) {
+    kit::Scene scene;
+    seamed_sphere(scene);
+    ajar_settings s = kit::settings(1, 64);
+    const kit::Bake plain(scene, s);
+    s.stitch_seams = 1;
+    const kit::Bake stitched(scene, s);
+    const kit::Layer a = plain.layer(AJAR_LAYER_AHD), b = stitched.layer(AJAR_LAYER_AHD);
+    int brightness = 0, direction = 0;
+    for (size_t i = 0; i < a.data.size(); i += 2) {
+        brightness += bits_of(a.data[i]) != bits_of(b.data[i]);
+        direction += bits_of(a.data[i + 1]) != bits_of(b.data[i + 1]);
+    }
+    EXPECT_GT(brightness, 100);
+    EXPECT_EQ(direction, 0);
 }
 
 // ---- surfaces --------------------------------------------------------------------------------

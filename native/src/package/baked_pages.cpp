@@ -65,7 +65,9 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
     pool.for_each(receivers.tiles.size(), progress, [&](size_t i) {
         for (uint32_t r = receivers.tiles[i].first; r < receivers.tiles[i].first + receivers.tiles[i].count; ++r) {
             const uint32_t t = receivers.texel[r];
-            const Ahd ahd = fit_ahd(out.irradiance[t], &result.sh[size_t{r} * kShCount]);
+            // The shape is that of the gathered light: stitching changes the brightness, not the directions.
+            Ahd ahd = fit_ahd(result.irradiance[r], &result.sh[size_t{r} * kShCount]);
+            ahd.irradiance = out.irradiance[t];
             out.packed_irradiance[t] = pack_r11g11b10f(ahd.irradiance);
             out.packed_direction[t] = pack_direction(ahd);
             clamped[i] += max_component(ahd.irradiance) > 64512.0f;
