@@ -59,9 +59,6 @@ public:
     }
     kit::Scene scene;
     std::vector<uint32_t> pages;
-    /// Pages of things that touch others: where they do, a bake with them moves positions out of the
-    /// other thing, which a bake that may hide either must not.
-    std::vector<uint32_t> touching;
 
 private:
     void add(const kit::MeshData& data, uint32_t material) {
@@ -71,7 +68,6 @@ private:
     /// A surface that is there while element is at 1 (open: open pose of a door), or closed leaf.
     void part(uint32_t element, bool open, const kit::MeshData& data, uint32_t material) {
         const bool when = element != kDoor || open;
-        if (element == kCrate || element == kBall) touching.push_back(static_cast<uint32_t>(pages.size()));
         if (o_.frozen != nullptr) {
             // Its page stays, so that pages of all scenes match.
             if (o_.frozen->there(element) == when)
@@ -157,8 +153,9 @@ Agreement compare(const Options& options, const State& state) {
         const kit::Layer e = whole.layer(AJAR_LAYER_IRRADIANCE, page),
                          validity = whole.layer(AJAR_LAYER_VALIDITY, page);
         for (size_t i = 0; i < e.data.size(); ++i, ++next) {
-            if (validity.data[i / 3] != 1.0f || std::count(other.touching.begin(), other.touching.end(), page) != 0)
-                continue;
+            // Black is what the bake has in the middle of a solid; terms may have light from around it there.
+            const float* light = &e.data[i - i % 3];
+            if (validity.data[i / 3] != 1.0f || light[0] + light[1] + light[2] == 0.0f) continue;
             total += sum[next];
             expected += e.data[i];
             squares += (sum[next] - e.data[i]) * (sum[next] - e.data[i]);
@@ -178,7 +175,7 @@ TEST(Terms, BasePlusTermsIsTheBakeOfAState) {
             o.pose = pose;
             const Agreement a = compare(o, state);
             EXPECT_NEAR(a.mean_ratio, 1.0, 0.006) << "state " << i << (pose ? " with pose" : "");
-            EXPECT_LT(a.rms, 0.12) << "state " << i << (pose ? " with pose" : "");
+            EXPECT_LT(a.rms, 0.06) << "state " << i << (pose ? " with pose" : "");
         }
     }
 }

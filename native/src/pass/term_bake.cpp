@@ -183,15 +183,15 @@ void TermBaker::find_thresholds() {
 }
 
 /// Whether a receiver keeps a term's light. Products of several elements must also stand out of
-/// their noise: their light is mostly a small difference.
+/// their noise, for their light is mostly a small difference, unless lamps shine or cast a shadow there.
 bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& light) const {
     const uint32_t id = table_.find(term);
     if (id == TermTable::kUnknown) return false;
-    const bool is_set = term.order() == 1 && term.set() != kNoElement;
-    if (is_set && direct_.of(receiver, id) != Vec3(0.0f)) return true;
+    const bool direct = direct_.of(receiver, id) != Vec3(0.0f);
+    if (direct && term.order() == 1 && term.set() != kNoElement) return true;
     const float level = std::abs(luminance(light.irradiance));
-    return level > threshold_[id] &&
-           (term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL || level > light.standard_error);
+    return level > threshold_[id] && (direct || term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL ||
+                                      level > light.standard_error);
 }
 
 BakeResult TermBaker::run() {

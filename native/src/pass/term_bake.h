@@ -34,6 +34,8 @@ private:
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups groups) const;
     DirectGroups look_around(const Tile& tile, uint32_t samples, uint32_t seed) const;
+    struct Evenness;
+    Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     float worth_at(const Ray& ray, const Hit& hit) const;
     uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;

@@ -24,20 +24,44 @@ std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
     return sets;
 }
 
+/// Whether some receivers of a tile are lit alike by a set, as the source pass saw it: while no switchable thing
+/// is there, and in what these change.
+struct TermBaker::Evenness {
+    float least[2], most[2];
+
+    Evenness() {
+        std::fill(least, least + 2, std::numeric_limits<float>::infinity());
+        std::fill(most, most + 2, 0.0f);
+    }
+    void add(int part, float light) {
+        least[part] = std::min(least[part], light), most[part] = std::max(most[part], light);
+    }
+    bool is_dark() const { return most[0] == 0.0f && most[1] == 0.0f; }
+    bool is_even() const { return least[0] >= kEvenLight * most[0] && least[1] >= kEvenLight * most[1]; }
+};
+
+TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t end) const {
+    Evenness out;
+    for (uint32_t r = begin; r < end; ++r) {
+        float light[2] = {};
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+            if (const Term& term = table_[e->term]; term.set() == set)
+                light[term.switch_count() != 0] += std::abs(luminance(e->color));
+        for (int part = 0; part < 2; ++part) out.add(part, light[part]);
+    }
+    return out;
+}
+
 /// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do.
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
     for (const DirectGroups::Group& g : groups.groups()) {
-        const uint32_t id = g.set == kNoElement ? TermTable::kUnknown : table_.find(Term(g.set));
-        if (id == TermTable::kUnknown) continue;
+        if (g.set == kNoElement) continue;
         for (uint32_t first = 0; first < tile.count; first += kLanes) {
-            float least = std::numeric_limits<float>::infinity(), most = 0.0f;
-            for (uint32_t lane = first; lane < std::min(first + kLanes, tile.count); ++lane) {
-                const float light = luminance(direct_.of(tile.first + lane, id));
-                least = std::min(least, light), most = std::max(most, light);
-            }
-            if (most == 0.0f)
+            const Evenness light =
+                evenness(g.set, tile.first + first, tile.first + std::min(first + kLanes, tile.count));
+            if (light.is_dark())
                 groups.limit(g.set, first / kLanes, kDarkSamples);
-            else if (least > kEvenLight * most)
+            else if (light.is_even())
                 groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
         }
     }

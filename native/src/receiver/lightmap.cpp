@@ -50,11 +50,22 @@ struct TexelPoint {
     float u, v;
 };
 
+/// Ray origin of a position, and what stands for it while a switchable solid covers it.
+struct Spot {
+    Vec3 origin{0.0f};
+    MovedPosition moved;
+    /// Where it is while all switchable things are there.
+    const Vec3& shown() const { return moved.presence.element == kNoElement ? origin : moved.origin; }
+};
+using Spots = std::vector<Spot>; ///< of one texel
+
 struct Builder {
     const Snapshot& scene;
     const Tracer& tracer;
     const Coverage& coverage;
+    SwitchSolids solids;
     std::vector<std::pair<uint32_t, uint32_t>> runs; ///< fragments [begin, end) of each receiver
+    std::vector<Spots> moved;                        ///< [receivers] those with a moved position; empty without solids
     LightmapReceivers out;
     std::atomic<uint64_t> pushed{0}, clamped{0};
 
@@ -67,8 +78,9 @@ struct Builder {
     float depth_inside(uint32_t triangle, const Vec2& p) const;
     Vec3 smooth_position(const TexelPoint& p) const;
     Vec3 shading_normal(const TexelPoint& p) const;
-    Vec3 origin_at(uint32_t receiver, const TexelPoint& point);
-    void keep_one_side(uint32_t receiver, uint32_t base);
+    Spot spot_at(uint32_t receiver, const TexelPoint& point);
+    void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
+    void join_moved();
     void find_sharing(const Tile& tile);
     Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
@@ -203,43 +215,45 @@ Vec3 Builder::push_out(Vec3 p, const Frame& frame, float size) {
 }
 
 /// Where a ray that stands for a point of the texel starts.
-Vec3 Builder::origin_at(uint32_t r, const TexelPoint& p) {
-    const Vec3 origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
-    return push_out(origin, out.frame[r], out.texel_size[r]);
+Spot Builder::spot_at(uint32_t r, const TexelPoint& p) {
+    Spot s;
+    s.origin = tracer.offset(smooth_position(p), scene.geometric_normal(p.triangle));
+    s.origin = push_out(s.origin, out.frame[r], out.texel_size[r]);
+    if (!solids.empty()) s.moved = solids.move_out(s.origin, out.frame[r], out.texel_size[r]);
+    return s;
 }
 
 /// Light on the two sides of a wall must not mix in one texel: where its positions do not see each other,
 /// all are taken from the largest of the parts that a wall cuts it into.
-void Builder::keep_one_side(uint32_t r, uint32_t base) {
-    Vec3* p = &out.positions[size_t{r} * out.positions_per_texel];
-    const uint32_t n = out.positions_per_texel;
+void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
+    const size_t n = spots.size();
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
-    const auto sees = [&](const Vec3& a, const Vec3& b) {
-        return tracer.intersect({a + up, b - a, 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
+    const auto sees = [&](const Spot& a, const Spot& b) {
+        return tracer.intersect({a.shown() + up, b.shown() - a.shown(), 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
     };
     uint32_t seen = 1;
-    for (uint32_t b = 1; b < n; ++b) seen += sees(p[0], p[b]);
+    for (size_t b = 1; b < n; ++b) seen += sees(spots[0], spots[b]);
     if (seen == n) return;
     out.cut[r] = 1;
-    std::vector<Vec3> points(p, p + n), best, side;
-    for (uint32_t k = 0; k < kSidePoints; ++k) points.push_back(origin_at(r, point(r, owen_sobol(k, hash32(base)))));
-    for (const Vec3& a : points) {
+    Spots points = spots, best, side;
+    for (uint32_t k = 0; k < kSidePoints; ++k) points.push_back(spot_at(r, point(r, owen_sobol(k, hash32(base)))));
+    for (const Spot& a : points) {
         side.clear();
-        for (const Vec3& b : points)
+        for (const Spot& b : points)
             if (&a == &b || sees(a, b)) side.push_back(b);
         if (side.size() > best.size()) best = side;
     }
-    for (uint32_t k = 0; k < n; ++k) p[k] = best[k * best.size() / n];
+    for (size_t k = 0; k < n; ++k) spots[k] = best[k * best.size() / n];
 }
 
 /// A wall between two texels of a block ends all sharing in it.
 void Builder::find_sharing(const Tile& tile) {
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
         const auto [begin, end] = block_of(scene, out, tile, r);
-        const Vec3 p = out.origins(r)[0] + out.frame[r].z * (kSideHeight * out.texel_size[r]);
+        const Vec3 p = out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
         out.shares[r] = 1;
         for (uint32_t q = begin; q < end; ++q) {
-            const Vec3 to = out.origins(q)[0] + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
+            const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
             if (q != r && tracer.intersect({p, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss) out.shares[r] = 0;
         }
     }
@@ -287,12 +301,25 @@ void Builder::set_albedo(uint32_t r) {
 void Builder::build(uint32_t r) {
     set_frame(r);
     set_albedo(r);
-    const uint32_t k_count = out.positions_per_texel;
     const uint32_t base = hash_combine(kPositionSalt, out.texel[r]);
-    for (uint32_t k = 0; k < k_count; ++k) {
-        out.positions[size_t{r} * k_count + k] = origin_at(r, sub_texel(r, k, base));
+    Spots spots;
+    for (uint32_t k = 0; k < out.positions_per_texel; ++k) spots.push_back(spot_at(r, sub_texel(r, k, base)));
+    keep_one_side(r, base, spots);
+    for (size_t k = 0; k < spots.size(); ++k) out.positions[size_t{r} * spots.size() + k] = spots[k].origin;
+    const auto is_moved = [](const Spot& s) { return s.moved.presence.element != kNoElement; };
+    if (std::any_of(spots.begin(), spots.end(), is_moved)) moved[r] = std::move(spots);
+}
+
+/// Rows of the receivers with moved positions, in their order.
+void Builder::join_moved() {
+    if (std::all_of(moved.begin(), moved.end(), [](const Spots& s) { return s.empty(); })) return;
+    out.moved_row.assign(moved.size(), kNoReceiver);
+    uint32_t rows = 0;
+    for (size_t r = 0; r < moved.size(); ++r) {
+        if (moved[r].empty()) continue;
+        out.moved_row[r] = rows++;
+        for (const Spot& s : moved[r]) out.moved.push_back(s.moved);
     }
-    keep_one_side(r, base);
 }
 
 void warn_about_uvs(const Snapshot& scene, const Coverage& coverage, std::vector<Warning>& warnings) {
@@ -357,7 +384,7 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
                                  uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
                                  std::vector<Warning>& warnings) {
-    Builder b{scene, tracer, coverage, {}, {}, {}, {}};
+    Builder b{scene, tracer, coverage, SwitchSolids(scene, tracer), {}, {}, {}, {}, {}};
     b.order();
     const size_t count = b.runs.size();
     b.out.positions_per_texel = positions_per_texel;
@@ -372,9 +399,11 @@ LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, co
     b.out.of_texel.assign(scene.texel_count(), kNoReceiver);
     for (uint32_t r = 0; r < count; ++r) b.out.of_texel[b.out.texel[r]] = r;
     b.out.positions.resize(count * positions_per_texel);
+    if (!b.solids.empty()) b.moved.resize(count);
     pool.for_each(b.out.tiles.size(), progress, [&](size_t i) {
         for (uint32_t r = b.out.tiles[i].first; r < b.out.tiles[i].first + b.out.tiles[i].count; ++r) b.build(r);
     });
+    b.join_moved();
     b.out.shares.resize(count);
     pool.for_each(b.out.tiles.size(), progress, [&](size_t i) { b.find_sharing(b.out.tiles[i]); });
     b.out.pushed_positions = b.pushed;

@@ -5,6 +5,7 @@
 
 #include "accel/embree_scene.h"
 #include "base/parallel.h"
+#include "receiver/switch_solids.h"
 #include "receiver/uv_raster.h"
 
 namespace ajar {
@@ -35,10 +36,26 @@ struct LightmapReceivers {
         shares; ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
     std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
     std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
+    std::vector<uint32_t> moved_row;  ///< [count] row of moved or kNoReceiver; empty: nothing is moved
+    std::vector<MovedPosition> moved; ///< [rows][positions_per_texel]
     uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
     uint64_t pushed_positions = 0;
 
     uint32_t count() const { return static_cast<uint32_t>(texel.size()); }
+    bool has_moved(uint32_t receiver) const { return !moved_row.empty() && moved_row[receiver] != kNoReceiver; }
+    /// What stands for a position while a switchable solid covers it; element kNoElement: nothing does.
+    MovedPosition moved_from(uint32_t receiver, uint32_t position) const {
+        if (!has_moved(receiver)) return {};
+        return moved[size_t{moved_row[receiver]} * positions_per_texel + position];
+    }
+    /// Where the first position is while all switchable things are there.
+    const Vec3& shown_origin(uint32_t receiver) const {
+        if (has_moved(receiver))
+            if (const MovedPosition& m = moved[size_t{moved_row[receiver]} * positions_per_texel];
+                m.presence.element != kNoElement)
+                return m.origin;
+        return *origins(receiver);
+    }
     const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
 };
 
@@ -47,7 +64,7 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
                                        uint32_t r);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
-/// (algorithms.md 9.1, 9.2, 9.4). They do not depend on the seed of the bake: what side of a wall a texel
+/// (algorithms.md 9.1, 9.2, 9.4), of switchable ones while these are there. They do not depend on the seed of the bake: what side of a wall a texel
 /// shows stays. Adds warnings about UVs to warnings.
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
                                  uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,

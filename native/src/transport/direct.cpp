@@ -14,6 +14,9 @@ namespace {
 constexpr uint32_t kProbes = 2; ///< samples of each receiver of a packet that decide whether the others are worth it
 constexpr float kGoOn = 0.25f;  ///< chance of a packet to go on although they found nothing
 
+/// Numbers that n samples take up: pairs never share them with other samples.
+constexpr uint32_t even(uint32_t n) { return (n + 1) & ~1u; }
+
 /// Eight receivers' samples that wait for their shadow rays.
 struct ShadowPacket {
     RayPacket rays;
@@ -22,9 +25,11 @@ struct ShadowPacket {
     PacketDirections local;
     float book_scale = 1.0f; ///< of what is booked
     bool arrived = false;    ///< some sample so far was not blocked
+    bool moved = false;      ///< samples of positions that switchable solids cover, from where they are moved to
     float scale[kLanes];
     uint32_t emitter[kLanes];
     bool lit[kLanes];
+    Presence covered[kLanes]; ///< whether a switchable solid must be there; element kNoElement: none
 };
 
 template <class Sink>
@@ -42,11 +47,28 @@ struct DirectSampler {
     uint64_t rays = 0;
 
     void shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end);
+    bool has_moved(uint32_t first) const;
     bool prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet, uint32_t lane) const;
-    void finish(ShadowPacket& packet, uint32_t first, uint32_t sample);
+    bool start_at(uint32_t receiver, uint32_t position, ShadowPacket& packet, uint32_t lane, Vec3& p) const;
+    void trace(ShadowPacket& packet, uint32_t first, uint32_t sample, uint32_t samples, uint32_t number);
+    void finish(ShadowPacket& packet, uint32_t first, uint32_t number);
     void arrive(const ShadowPacket& packet, uint32_t lane, uint32_t receiver);
     uint64_t run();
 };
+
+/// Origin p of a position's sample, and what must be there for it; false if there is none.
+template <class Sink>
+bool DirectSampler<Sink>::start_at(uint32_t receiver, uint32_t position, ShadowPacket& packet, uint32_t lane,
+                                   Vec3& p) const {
+    p = g.receivers.origins(receiver)[position];
+    if constexpr (Sink::kSwitches) {
+        const MovedPosition m = g.receivers.moved_from(receiver, position);
+        if (packet.moved) p = m.origin;
+        packet.covered[lane] = {m.presence.element, m.presence.state == packet.moved};
+        return !packet.moved || m.presence.element != kNoElement;
+    }
+    return true;
+}
 
 template <class Sink>
 bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet,
@@ -60,7 +82,8 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     const Vec2 spread = owen_sobol(sample, h);
     const uint32_t positions = g.receivers.positions_per_texel,
                    position = std::min(static_cast<uint32_t>(spread.y * static_cast<float>(positions)), positions - 1);
-    const Vec3 p = g.receivers.origins(r)[position];
+    Vec3 p;
+    if (!start_at(r, position, packet, lane, p)) return false;
     const EmitterSample s = g.emitters.sample(emitter, p, {u, spread.x});
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
@@ -83,9 +106,8 @@ void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint
     const EmitterSample& s = packet.sample[lane];
     auto through = sink.start(g.scene, g.receivers.triangle[receiver]);
     if constexpr (Sink::kSwitches)
-        if (const Presence p = g.emitters.presence(packet.emitter[lane]);
-            p.element != kNoElement && !through.condition.require(p.element, p.state))
-            return;
+        for (const Presence& p : {packet.covered[lane], g.emitters.presence(packet.emitter[lane])})
+            if (p.element != kNoElement && !through.condition.require(p.element, p.state)) return;
     const auto book = [&](const auto& way) {
         // A bright texel's weight is its whole radiance over the density; its terms share it.
         if (s.texel != kNoReceiver && sink.has_texels())
@@ -100,32 +122,49 @@ void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint
 }
 
 template <class Sink>
-void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t sample) {
+void DirectSampler<Sink>::finish(ShadowPacket& packet, uint32_t first, uint32_t number) {
     for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane) {
         if (packet.valid[lane] != 0 && (packet.lit[lane] || packet.rays.tfar[lane] >= 0.0f)) {
             packet.arrived = true;
             arrive(packet, lane, tile.first + first + lane);
         }
-        sink.end_sample(lane, first + lane, first_sample + sample, packet.local);
+        sink.end_sample(lane, first + lane, first_sample + number, packet.local);
     }
-    sink.end_packet(first, first_sample + sample, packet.local);
+    sink.end_packet(first, first_sample + number, packet.local);
 }
 
-/// Samples begin to end of the receivers of one packet.
+/// Sample number sample of the receivers of one packet, booked as number.
+template <class Sink>
+void DirectSampler<Sink>::trace(ShadowPacket& packet, uint32_t first, uint32_t sample, uint32_t samples,
+                                uint32_t number) {
+    packet.rays.prepare(kMaskShadowOpaque);
+    for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        packet.valid[lane] = first + lane < tile.count && prepare(first + lane, sample, samples, packet, lane) ? -1 : 0;
+        if (packet.valid[lane] == 0) packet.rays.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
+        rays += packet.valid[lane] != 0;
+    }
+    g.tracer.occluded(packet.valid, packet.rays);
+    finish(packet, first, number);
+}
+
+template <class Sink>
+bool DirectSampler<Sink>::has_moved(uint32_t first) const {
+    const uint32_t end = std::min(first + kLanes, tile.count);
+    for (uint32_t i = first; Sink::kSwitches && i < end; ++i)
+        if (g.receivers.has_moved(tile.first + i)) return true;
+    return false;
+}
+
+/// Samples begin to end of the receivers of one packet. Those of moved positions have numbers of their own, so
+/// that pairs of samples stay pairs.
 template <class Sink>
 void DirectSampler<Sink>::shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end) {
     const uint32_t samples = group.samples_at(first);
-    for (uint32_t sample = begin; sample < end; ++sample) {
-        packet.rays.prepare(kMaskShadowOpaque);
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            packet.valid[lane] =
-                first + lane < tile.count && prepare(first + lane, sample, samples, packet, lane) ? -1 : 0;
-            if (packet.valid[lane] == 0) packet.rays.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
-            rays += packet.valid[lane] != 0;
-        }
-        g.tracer.occluded(packet.valid, packet.rays);
-        finish(packet, first, sample);
-    }
+    packet.moved = false;
+    for (uint32_t sample = begin; sample < end; ++sample) trace(packet, first, sample, samples, sample);
+    if (!has_moved(first)) return;
+    packet.moved = true;
+    for (uint32_t sample = begin; sample < end; ++sample) trace(packet, first, sample, samples, even(samples) + sample);
 }
 
 template <class Sink>
@@ -161,7 +200,7 @@ uint64_t run_groups(const GatherScene& scene, const DirectGroups& groups, const 
         const uint32_t own_seed = is_set ? hash_combine(seed, g.set) : seed;
         rays +=
             DirectSampler<Sink>{scene, g, tile, mis, own_seed, {}, sink, first_sample, true, thrifty && is_set}.run();
-        first_sample += (g.samples + 1) & ~1u; // samples of two groups never make a pair
+        first_sample += 2 * even(g.samples); // samples of two groups never make a pair
     }
     return rays;
 }

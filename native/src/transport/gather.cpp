@@ -16,7 +16,7 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
             const auto t = static_cast<uint32_t>(page.first_texel + ny * page.width + nx);
             const uint32_t r = g.receivers.of_texel[t];
             if (r == kNoReceiver || glm::dot(g.receivers.frame[r].z, g.receivers.frame[own].z) < 0.5f) continue;
-            const Vec3 to = g.receivers.origins(r)[0] - p;
+            const Vec3 to = g.receivers.shown_origin(r) - p;
             const float distance = glm::dot(to, to);
             if (distance >= best_distance || g.tracer.intersect({p + up, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss)
                 continue;

@@ -40,7 +40,8 @@ struct Gatherer {
         RayPacket packet;
         PacketDirections local;
         alignas(32) int32_t valid[kLanes];
-        uint32_t texel[kLanes]; ///< whose light an ordinary hit sees, or kNoTexel
+        uint32_t texel[kLanes];    ///< whose light an ordinary hit sees, or kNoTexel
+        uint32_t position[kLanes]; ///< of the receiver's
         uint32_t first, sample;
         bool waits = false;
     };
@@ -82,6 +83,9 @@ struct Gatherer {
         Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) f.valid[lane] = lane < count ? -1 : 0;
         tile_rays.aim(first, stratum, f.packet, f.local);
+        if (!g.receivers.moved_row.empty())
+            for (uint32_t lane = 0; lane < count; ++lane)
+                f.position[lane] = tile_rays.position(first + lane, stratum);
         if (o.aims != nullptr)
             for (uint32_t lane = 0; lane < count; ++lane) {
                 const uint32_t position = tile_rays.position(first + lane, stratum);
@@ -96,7 +100,7 @@ struct Gatherer {
         Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
             f.valid[lane] =
-                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, f.packet, f.local) ? -1 : 0;
+                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, f) ? -1 : 0;
             if (f.valid[lane] != 0) continue;
             f.packet.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
             f.local.set(lane, Vec3(0, 0, 1), 0.0f);
@@ -104,8 +108,7 @@ struct Gatherer {
         trace(first, sample);
     }
 
-    bool aim_lane(uint32_t i, uint32_t lane, uint32_t aim, uint32_t number, RayPacket& packet,
-                  PacketDirections& local) const {
+    bool aim_lane(uint32_t i, uint32_t lane, uint32_t aim, uint32_t number, Flight& f) const {
         const uint32_t r = tile.first + i, h = hash_combine(hash_combine(o.seed, g.receivers.texel[r]), aim);
         const uint32_t position = (number + h) % g.receivers.positions_per_texel;
         // Positions follow the low bits of the number, so the points in the box must not.
@@ -115,8 +118,9 @@ struct Gatherer {
         const Vec3 w = g.receivers.frame[r].to_local(direction);
         if (!(w.z > 0.0f)) return false;
         const float density = mis_gather * hemisphere_pdf(w.z, o.share) + o.aims->density(i, position, direction);
-        local.set(lane, w, mis_gather / density);
-        packet.set(lane, g.receivers.origins(r)[position], direction, std::numeric_limits<float>::infinity());
+        f.position[lane] = position;
+        f.local.set(lane, w, mis_gather / density);
+        f.packet.set(lane, g.receivers.origins(r)[position], direction, std::numeric_limits<float>::infinity());
         return true;
     }
 
@@ -164,7 +168,8 @@ struct Gatherer {
     void shade(uint32_t lane, const Flight& f) {
         const RayPacket& packet = f.packet;
         const uint32_t triangle = packet.triangle[lane], texel = f.texel[lane], local = f.first + lane;
-        const Through through = sink.start(g.scene, g.receivers.triangle[tile.first + local]);
+        Through through = sink.start(g.scene, g.receivers.triangle[tile.first + local]);
+        if (!shade_moved(lane, f, through)) return;
         if (texel != kNoTexel && sink.flags(texel) == 0) return sink.texel(through, texel, 1.0f);
         const Ray ray{{packet.ox[lane], packet.oy[lane], packet.oz[lane]}, packet.direction(lane)};
         const Hit hit{triangle, packet.u[lane], packet.v[lane], packet.tfar[lane],
@@ -172,6 +177,26 @@ struct Gatherer {
         const Origin from{local, f.sample, f.local.weight[lane]};
         if (texel != kNoTexel) return first_hit(ray, hit, through, from);
         walk(ray, hit, through, from, kMaxLayers);
+    }
+
+    /// The ray of a position that a switchable solid covers, from where it is moved to while the solid is there.
+    /// Leaves the position's own ray the other case; false if it has none.
+    bool shade_moved(uint32_t lane, const Flight& f, Through& through) {
+        if constexpr (Sink::kSwitches) {
+            const uint32_t local = f.first + lane;
+            if (!g.receivers.has_moved(tile.first + local)) return true;
+            const MovedPosition moved = g.receivers.moved_from(tile.first + local, f.position[lane]);
+            if (moved.presence.element == kNoElement) return true;
+            Through there = through;
+            if (there.condition.require(moved.presence.element, moved.presence.state)) {
+                const Ray ray{moved.origin, f.packet.direction(lane)};
+                ++rays;
+                walk(ray, g.tracer.intersect(ray, kMaskGatherAll), there, {local, f.sample, f.local.weight[lane]},
+                     kMaxLayers);
+            }
+            return through.condition.require(moved.presence.element, !moved.presence.state);
+        }
+        return true;
     }
 
     /// The general case: emission, layers of transmissive and switchable surfaces, back faces.
