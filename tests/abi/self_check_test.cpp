@@ -9,7 +9,7 @@
 namespace {
 
 /// A closed room with a lamp, a box in it.
-void build_room(kit::Scene& scene) {
+void build_room(kit::Scene& scene, bool lamp_in_set = false) {
     const uint32_t grey = scene.diffuse({0.5f, 0.6f, 0.4f}), page = scene.page(48, 48);
     scene.instance(scene.mesh(kit::box({-2, -2, 0}, {2, 2, 3}, true)), grey, page, "room");
     ajar_light_desc lamp;
@@ -19,6 +19,7 @@ void build_room(kit::Scene& scene) {
     lamp.energy = 60.0f;
     lamp.size_x = 0.1f;
     const double at[12] = {1, 0, 0, 0.5, 0, 1, 0, 0.3, 0, 0, 1, 2.0};
+    if (lamp_in_set) scene.current_set = scene.element(AJAR_ELEMENT_LIGHT_SET, "lamps");
     scene.light(lamp, at);
     scene.commit();
 }
@@ -30,6 +31,37 @@ nlohmann::json report_of(uint32_t check_points) {
     s.check_points = check_points;
     kit::Bake bake(scene, s);
     return nlohmann::json::parse(bake.report());
+}
+
+/// Root mean square of the relative difference that seeds make to the light of all terms, per bake.
+double spread(const std::vector<double>& a, const std::vector<double>& b) {
+    double squares = 0.0, count = 0.0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const double mean = 0.5 * (a[i] + b[i]);
+        if (mean <= 0.0) continue;
+        squares += 0.5 * (a[i] - b[i]) * (a[i] - b[i]) / (mean * mean);
+        count += 1.0;
+    }
+    return std::sqrt(squares / count);
+}
+
+TEST(Report, StatesTheErrorOfLightInSetsToo) {
+    kit::Scene scene;
+    build_room(scene, true);
+    std::vector<double> light[2];
+    double told = 0.0;
+    for (uint32_t seed = 0; seed < 2; ++seed) {
+        ajar_settings s = kit::settings(3, 256);
+        s.seed = seed;
+        const kit::Bake bake(scene, s);
+        told += 0.5 * nlohmann::json::parse(bake.report()).at("error").at("estimated_rms").get<double>();
+        const kit::Layer lit = bake.term(1, 48, 48), valid = bake.layer(AJAR_LAYER_VALIDITY);
+        for (size_t i = 0; i < valid.data.size(); ++i)
+            light[seed].push_back(valid.data[i] != 1.0f ? 0.0
+                                                        : 0.2126 * lit.data[3 * i] + 0.7152 * lit.data[3 * i + 1] +
+                                                              0.0722 * lit.data[3 * i + 2]);
+    }
+    EXPECT_NEAR(told / spread(light[0], light[1]), 1.0, 0.25);
 }
 
 TEST(SelfCheck, BruteForceAgreesWithARightBake) {

@@ -37,12 +37,12 @@ json seconds_json(const Job& job) {
     return {{"total", job.seconds()}, {"stages", stages}};
 }
 
-/// Relative standard errors of valid texels, sorted; dark texels count against a floor of 1% of
-/// the median (algorithms.md 10.4).
+/// Relative standard errors of valid texels with everything open, present and lit, sorted; dark texels count
+/// against a floor of 1% of the median (algorithms.md 10.4).
 std::vector<float> relative_errors(const JobOutput& o) {
     std::vector<float> levels;
     for (size_t r = 0; r < o.receivers.count(); ++r)
-        levels.push_back(luminance(o.pages.irradiance[o.receivers.texel[r]]));
+        levels.push_back(o.bake.total.empty() ? luminance(o.pages.irradiance[o.receivers.texel[r]]) : o.bake.total[r]);
     if (levels.empty()) return {};
     std::vector<float> sorted = levels;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2), sorted.end());
@@ -50,7 +50,7 @@ std::vector<float> relative_errors(const JobOutput& o) {
     std::vector<float> errors;
     for (size_t r = 0; r < levels.size(); ++r)
         if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)
-            errors.push_back(o.pages.standard_error[o.receivers.texel[r]] / (levels[r] + floor));
+            errors.push_back(o.pages.all_on_error()[o.receivers.texel[r]] / (levels[r] + floor));
     std::sort(errors.begin(), errors.end());
     return errors;
 }

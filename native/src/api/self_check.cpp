@@ -70,7 +70,7 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPag
         const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
         if (pages.validity[texel] != 1.0f) continue;
         points.push_back(
-            {luminance(all_on(pages, texel)), pages.standard_error[texel], luminance(v.irradiance), v.standard_error});
+            {luminance(all_on(pages, texel)), pages.all_on_error()[texel], luminance(v.irradiance), v.standard_error});
     }
     compare_points(points, check);
     // The first step may grow: direct light can fall where no lightmap is.

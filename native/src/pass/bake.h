@@ -18,6 +18,8 @@ struct BakeResult {
     std::vector<float> sh;                  ///< [count][9] luminance of incident radiance, tangent frame
     std::vector<float> sh_rgb;              ///< [count][27] if kept
     std::vector<float> standard_error;      ///< of the irradiance's luminance, W/m^2
+    std::vector<float> total;               ///< luminance with everything open, present and lit; empty without elements
+    std::vector<float> total_error;         ///< standard error of total
     std::vector<float> samples;             ///< gather rays
     std::vector<float> inside;              ///< share of rays that met the inside of a solid close by
     std::vector<std::vector<Vec3>> bounces; ///< irradiance of every bounce, all lights, if kept

@@ -8,6 +8,8 @@ namespace {
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
 constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces after the first may take
 constexpr uint32_t kLeastBounceSamples = 16;
+constexpr size_t kCalibrationStep = 4; ///< every n-th tile of many is estimated twice
+constexpr size_t kLeastTwins = 16;     ///< tiles, if there are as many
 constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 } // namespace
@@ -76,6 +78,8 @@ GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, 
     o.seed = seed;
     return o;
 }
+
+size_t calibration_step(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTwins, 1, kCalibrationStep); }
 
 Vec2 compare_twins(float a, float b, double standard_error) {
     const float level = 0.5f * (a + b);

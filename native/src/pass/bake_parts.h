@@ -14,7 +14,6 @@ inline constexpr uint32_t kSourceSamples = 16; ///< emitter samples per receiver
 inline constexpr uint32_t kPilotRays = 32;
 inline constexpr uint32_t kPilotParts = 4;      ///< of each tile: its light may differ much from place to place
 inline constexpr uint32_t kPilotReceivers = 8;  ///< of each part
-inline constexpr uint32_t kCalibrationStep = 4; ///< every n-th tile is estimated twice
 inline constexpr double kPlannedPart = 0.97;    ///< of the time left for the final gather; checks of the error follow
 inline constexpr float kFinalShare = 0.5f;      ///< cosine share of the final rays (algorithms.md 1.10)
 
@@ -51,6 +50,9 @@ Tile pilot_part(const Tile& tile, uint32_t part);
 /// Final gather rays of a plan that share emission with the emitter samples of groups.
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed);
+
+/// Every how manyth tile is estimated twice, to correct the stated error: of few tiles more.
+size_t calibration_step(size_t tiles);
 
 /// Half the squared difference of two answers for a receiver, and what the strata say it should be, both over the
 /// squared level; 0, 0 where they say nothing of each other.

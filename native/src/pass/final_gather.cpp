@@ -204,12 +204,12 @@ void Baker::finish_tile(size_t i) {
 /// The strata estimate is biased up where strata differ in mean. A second, independent answer
 /// for a few receivers measures by how much.
 void Baker::calibrate_error() {
-    const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
+    const size_t step = calibration_step(s_.receivers.tiles.size()), count = s_.receivers.tiles.size() / step;
     std::vector<Vec2> parts(count, Vec2(0.0f));
     pool_.for_each(
         count, progress_,
         [&](size_t k) {
-            const size_t i = k * kCalibrationStep;
+            const size_t i = k * step;
             const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
             DirectGroups groups = look_around(tile, seed);

@@ -24,6 +24,8 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
         const size_t before = out.light.size();
         result_.samples[r] = static_cast<float>(plan.gather);
         result_.inside[r] = t.gather.inside(lane) * per_ray;
+        result_.total[r] = luminance(t.total(lane));
+        result_.total_error[r] = static_cast<float>(std::sqrt(t.total_variance(lane)));
         for (const uint32_t term : t.terms_at[lane]) {
             TermLight light{term, t.irradiance(term, lane), {}, static_cast<float>(std::sqrt(t.variance(term, lane)))};
             const auto *g = t.gathered(term, lane), *d = t.sampled(term, lane);
@@ -110,7 +112,7 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     const uint32_t n = s_.receivers.count();
     result_.irradiance.assign(n, Vec3(0.0f));
     result_.sh.assign(size_t{n} * kShCount, 0.0f);
-    result_.standard_error.assign(n, 0.0f);
+    for (auto* v : {&result_.standard_error, &result_.total, &result_.total_error}) v->assign(n, 0.0f);
     result_.samples.assign(n, 0.0f);
     result_.inside.assign(n, 0.0f);
     std::vector<FinalTile> tiles(s_.receivers.tiles.size());
@@ -128,12 +130,12 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
 
 /// As in the plain bake: a second answer for a few receivers corrects the strata estimate of all.
 void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
-    const size_t count = s_.receivers.tiles.size() / kCalibrationStep;
+    const size_t step = calibration_step(s_.receivers.tiles.size()), count = s_.receivers.tiles.size() / step;
     std::vector<Vec2> parts(count, Vec2(0.0f));
     pool_.for_each(
         count, progress_,
         [&](size_t k) {
-            const size_t i = k * kCalibrationStep;
+            const size_t i = k * step;
             const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
             const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)),
                            b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
@@ -143,7 +145,8 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
         },
         false);
     result_.error_calibration = error_calibration(parts);
-    for (float& e : result_.standard_error) e *= result_.error_calibration;
+    for (auto* v : {&result_.standard_error, &result_.total_error})
+        for (float& e : *v) e *= result_.error_calibration;
     for (TermLight& l : result_.terms.light) l.standard_error *= result_.error_calibration;
 }
 
