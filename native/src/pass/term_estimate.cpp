@@ -131,7 +131,8 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     return t;
 }
 
-/// What drives a tile's ray counts: all light together, and each term that is a fair part of it.
+/// What drives a tile's ray counts: all light together, and each term that is a fair part of it. Of the variance
+/// that all light may have, a term may have as large a part as it has of the light: dim terms may be noisier.
 MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
     const float share = 1.0f / static_cast<float>(lanes);
     MeasuredNoise p;
@@ -149,7 +150,7 @@ MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
             if (const auto* b = t.sampled(term, lane)) direct += std::max(b->squares, 0.0) * share;
         }
         if (level < kPlanShare * p.level || !(level > 0.0f)) continue;
-        const double scale = double(p.level / level) * (p.level / level);
+        const double scale = double(p.level) / level;
         p.gather_variance = std::max(p.gather_variance, static_cast<float>(gather * scale));
         p.direct_variance = std::max(p.direct_variance, static_cast<float>(direct * scale));
     }
