@@ -11,9 +11,9 @@ import bpy
 from . import settings
 from .accuracy import knobs
 from .accuracy.worker import REQUEST, snapshot_folder
-from .apply import preview, uvs
+from .apply import uvs
 from .bridge.client import WorkerClient
-from .job import JobFailed, layout_steps, snapshot_steps
+from .job import JobFailed, layout_steps, put_back, snapshot_steps
 
 EXPORTED = 0.05  # share of the bar for the export
 
@@ -30,7 +30,7 @@ def accuracy_steps(job, out, preset, quick, limits):
         yield from _export(job, folder, density, preset, quick)
     finally:
         if not job.link.detached:
-            _put_back(job, kept, shown)
+            put_back(job, kept, shown)
     wishes = {"name": _name(), "preset": preset, "density": density, "quick": quick, **limits}
     with open(os.path.join(folder, REQUEST), "w", encoding="utf-8") as file:
         json.dump(wishes, file)
@@ -53,15 +53,6 @@ def _export(job, folder, density, preset, quick):
             job.status.warn(f"{factor * density:g} texels per metre", f"not measured: {failure}")
             continue
         yield from snapshot_steps(job, str(snapshot_folder(folder, factor)), layout, overrides)
-
-
-def _put_back(job, kept, shown):
-    """Lightmap UVs and preview as before."""
-    scene = job.link.scene()
-    kept.restore(scene)
-    if shown:
-        with job.link.context():
-            job.status.warn_all(preview.show(bpy.context))
 
 
 def _name():

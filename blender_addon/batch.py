@@ -59,6 +59,7 @@ def parse(arguments):
         "--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers"
     )
     parser.add_argument("--no-preview", action="store_true", help="save the .blend without the preview")
+    parser.add_argument("--predict", action="store_true", help="only say how long each preset would take")
     parser.add_argument("--layout-only", action="store_true", help="only unwrap and pack, do not bake")
     return parser.parse_args(arguments)
 
@@ -170,7 +171,7 @@ def save(target, record, package, report):
 
 def run(options):
     """Bakes the open file; returns the exit code."""
-    from ajar import checks, job, settings
+    from ajar import checks, job, predict_job, settings
 
     if not bpy.data.is_saved:
         raise BatchError("no .blend is open: blender -b FILE.blend -P batch.py -- --out DIR")
@@ -184,7 +185,9 @@ def run(options):
     for finding in findings:
         print(f"ajar: warning: {finding}", flush=True)
     keep = options.keep_uvs or context.scene.ajar.keep_uvs
-    if options.layout_only:
+    if options.predict:
+        task = job.Job("Prediction", context, predict_job.predict_steps, overrides=overrides(options))
+    elif options.layout_only:
         task = job.Job(
             "Lightmap UVs", context, job.layout_steps, keep_existing=keep, overrides=overrides(options)
         )
@@ -201,11 +204,11 @@ def run(options):
         )
     signal.signal(signal.SIGTERM, lambda *_: job.manager.cancel())
     signal.signal(signal.SIGINT, lambda *_: job.manager.cancel())
-    return finish(task, target)
+    return finish(task, None if options.predict else target)
 
 
 def finish(task, target):
-    """Runs the job to its end and saves the result; returns the exit code."""
+    """Runs the job to its end and saves the result, or says it if there is no target; returns the exit code."""
     from ajar import settings
     from ajar.apply import record
     from ajar.job import manager
@@ -221,6 +224,9 @@ def finish(task, target):
         return CANCELLED
     if task.status.result != "done":
         raise BatchError(task.status.message)
+    if target is None:
+        print(f"ajar: {task.status.message}", flush=True)
+        return DONE
     save(target, record, settings.PACKAGE, settings.REPORT)
     print(f"ajar: done: {target}", flush=True)
     return DONE

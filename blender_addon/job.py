@@ -232,6 +232,15 @@ def snapshot_steps(job, folder, layout, overrides=None):
     job.status.warn_all(written.warnings)
 
 
+def put_back(job, kept, shown):
+    """Lightmap UVs (a KeptLayout) and preview as before."""
+    scene = job.link.scene()
+    kept.restore(scene)
+    if shown:
+        with job.link.context():
+            job.status.warn_all(preview.show(bpy.context))
+
+
 def finish(job, package, report, show, overrides=None):
     """Records the finished bake on its scene and shows it. A file that was closed meanwhile keeps
     the package on disk only."""
@@ -276,6 +285,7 @@ class Manager:
     def __init__(self):
         self.job = None
         self.last = None  # status of the job before
+        self.predicted = None  # what predict_job found last
 
     @property
     def running(self):

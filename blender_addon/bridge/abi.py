@@ -179,6 +179,7 @@ class Settings(c.Structure):
         ("door_rays", f32),
         ("check_points", u32),
         ("light_patches", u32),
+        ("trial", u32),
     ]
 
 

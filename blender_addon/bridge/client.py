@@ -49,6 +49,11 @@ class WorkerClient:
         return cls(["bake", directory, "--package", package, "--report", report], **options)
 
     @classmethod
+    def predict(cls, directory, **options):
+        """Worker that predicts what bakes of a snapshot directory would take (see worker.predict)."""
+        return cls(["predict", directory], **options)
+
+    @classmethod
     def layout(cls, directory, **options):
         """Worker that answers a layout request directory."""
         return cls(["layout", directory], **options)

@@ -3,8 +3,9 @@
 
     python3 worker.py layout DIR
     python3 worker.py bake DIR --package OUT_DIR --report REPORT.json
+    python3 worker.py predict DIR
 
-Writes one JSON event per line to stdout (progress, warning, error, cancelled, done). A line
+Writes one JSON event per line to stdout (progress, warning, predicted, error, cancelled, done). A line
 "cancel" on stdin, a closed stdin or SIGTERM cancels. Exit codes: 0 done, 1 error, 2 cancelled.
 """
 
@@ -30,6 +31,7 @@ from .scene_builder import SceneBuilder, fill_settings
 from .snapshot_io import Reader, SnapshotError, write_text_whole
 
 POLL_SECONDS = 0.1
+WISHES = "predict.json"  # beside a snapshot: settings by name
 DONE, FAILED, CANCELLED = 0, 1, 2
 
 
@@ -99,16 +101,11 @@ def bake(library, host, arguments):
     """The 'bake' command; returns the exit code."""
     with Reader(arguments.directory, "snapshot") as reader:
         settings = fill_settings(library, reader.data.get("settings", {}))
-        builder = SceneBuilder(library, reader)
         known = reader.data.get("warnings", [])
         extras = reader.data.get("extras")
-        try:
-            if not builder.build(host.cancel.is_set):
-                return CANCELLED
-            send_scene_warnings(library, host, builder)
-        except BaseException:
-            builder.release()
-            raise
+        builder = build_scene(library, host, reader)
+    if builder is None:
+        return CANCELLED
     job = abi.Handle()
     try:
         check(library, library.ajar_job_start(builder.scene, ctypes.byref(settings), ctypes.byref(job)))
@@ -116,6 +113,71 @@ def bake(library, host, arguments):
         builder.release()  # the job keeps its own reference
     try:
         return finish(library, host, job, arguments, known, extras)
+    finally:
+        library.ajar_job_release(ctypes.byref(job))
+
+
+def build_scene(library, host, reader):
+    """Builder of a snapshot's committed scene, whose warnings it passes on; None if cancelled."""
+    builder = SceneBuilder(library, reader)
+    try:
+        if builder.build(host.cancel.is_set):
+            send_scene_warnings(library, host, builder)
+            return builder
+    except BaseException:
+        builder.release()
+        raise
+    builder.release()
+    return None
+
+
+class Part:
+    """A host for one of several jobs, whose progress is a part of the whole."""
+
+    def __init__(self, host, number, count):
+        self._host, self._number, self._count = host, number, count
+        self.cancel = host.cancel
+
+    def send(self, event, **values):
+        """Passes progress on."""
+        values.update(fraction=(self._number + values["fraction"]) / self._count, remaining=-1.0)
+        self._host.send(event, **values)
+
+
+def predict(library, host, arguments):
+    """The 'predict' command: seconds that bakes of a snapshot would take, with the settings of each name in its
+    WISHES. Returns the exit code."""
+    wishes = json.loads((arguments.directory / WISHES).read_text(encoding="utf-8"))
+    with Reader(arguments.directory, "snapshot") as reader:
+        builder = build_scene(library, host, reader)
+    if builder is None:
+        return CANCELLED
+    seconds, texels = {}, 0
+    try:
+        for number, (name, values) in enumerate(wishes.items()):
+            settings = fill_settings(library, {**values, "trial": True})
+            trial = run_trial(library, Part(host, number, len(wishes)), builder.scene, settings)
+            if trial is None:
+                return CANCELLED
+            seconds[name], texels = trial["predicted_seconds"], trial["texels"]
+            host.send("predicted", name=name, seconds=seconds[name])
+    finally:
+        builder.release()
+    host.send("done", predicted=seconds, texels=texels)
+    return DONE
+
+
+def run_trial(library, host, scene, settings):
+    """Report of a trial; None if cancelled."""
+    job = abi.Handle()
+    check(library, library.ajar_job_start(scene, ctypes.byref(settings), ctypes.byref(job)))
+    try:
+        result = wait(library, host, job)
+        if result == abi.CANCELLED or host.cancel.is_set():
+            return None
+        if result < 0:
+            raise job_error(library, job, result)
+        return json.loads(read_report(library, job, ()))
     finally:
         library.ajar_job_release(ctypes.byref(job))
 
@@ -189,7 +251,7 @@ def parse(arguments):
     """Command line as a namespace."""
     parser = argparse.ArgumentParser(prog="worker.py", description="Ajar bake worker")
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, function in (("layout", layout), ("bake", bake)):
+    for name, function in (("layout", layout), ("bake", bake), ("predict", predict)):
         command = commands.add_parser(name)
         command.add_argument("directory", type=Path)
         command.set_defaults(run=function)

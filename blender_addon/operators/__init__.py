@@ -2,7 +2,7 @@
 """Operators, one file per concept."""
 import bpy
 
-from . import accuracy, bake, check, light_sets, movables, preview, uvs
+from . import accuracy, bake, check, light_sets, movables, predict, preview, uvs
 
 CLASSES = (
     *accuracy.CLASSES,
@@ -10,6 +10,7 @@ CLASSES = (
     *check.CLASSES,
     *light_sets.CLASSES,
     *movables.CLASSES,
+    *predict.CLASSES,
     *preview.CLASSES,
     *uvs.CLASSES,
 )

@@ -45,6 +45,19 @@ def draw_bake(layout, context):
         depress=ajar.preview,
     )
     layout.operator("ajar.check", icon="CHECKMARK")
+    draw_prediction(layout, context)
+
+
+def draw_prediction(layout, context):
+    """What a bake would take, once that was asked for this scene."""
+    layout.operator("ajar.predict", icon="TIME")
+    found = job.manager.predicted
+    if found is None or found.scene != context.scene.name:
+        return
+    column = layout.column(align=True)
+    column.label(text=f"At {found.density:g} texels per metre, {found.texels} texels:")
+    for line in found.lines():
+        column.label(text=line)
 
 
 def draw_last_bake(layout, context):

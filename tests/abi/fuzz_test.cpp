@@ -258,6 +258,7 @@ ajar_result Fuzzer::start_job() {
     s.threads = chance(0.9) ? 1 : integer();
     s.keep_sh = pick(2);
     s.light_patches = pick(4);
+    s.trial = pick(3);
     s.keep_bounces = pick(2);
     s.stitch_seams = pick(2);
     ajar_job job = nullptr;

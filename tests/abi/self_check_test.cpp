@@ -64,6 +64,25 @@ TEST(Report, StatesTheErrorOfLightInSetsToo) {
     EXPECT_NEAR(told / spread(light[0], light[1]), 1.0, 0.25);
 }
 
+TEST(Trial, PredictsATimeAndHoldsNoLight) {
+    for (const bool set : {false, true}) {
+        kit::Scene scene;
+        build_room(scene, set);
+        ajar_settings s = kit::settings(3, 256);
+        s.trial = 1;
+        s.check_points = 16;
+        const kit::Bake trial(scene, s);
+        const nlohmann::json report = nlohmann::json::parse(trial.report());
+        EXPECT_GT(report.at("predicted_seconds").get<double>(), 0.0);
+        EXPECT_GT(report.at("texels").get<int>(), 1000);
+        uint32_t width = 0, height = 0, channels = 0, count = 0;
+        EXPECT_EQ(ajar_job_layer_size(trial.handle(), 0, AJAR_LAYER_IRRADIANCE, &width, &height, &channels),
+                  AJAR_ERROR_STATE);
+        EXPECT_EQ(ajar_job_term_count(trial.handle(), &count), AJAR_ERROR_STATE);
+        EXPECT_EQ(ajar_job_write_package(trial.handle(), "/nonexistent/package", nullptr), AJAR_ERROR_STATE);
+    }
+}
+
 TEST(SelfCheck, BruteForceAgreesWithARightBake) {
     const nlohmann::json report = report_of(128);
     const auto& check = report.at("self_check");

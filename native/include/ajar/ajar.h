@@ -279,6 +279,8 @@ typedef struct ajar_settings {
                                hemisphere; 0..1, 0 = none */
     uint32_t check_points;  /* random texels at which brute force checks the finished bake; 0 = none, the default */
     uint32_t light_patches; /* AJAR_LIGHT_PATCHES_* */
+    uint32_t trial;         /* 1: no bake and no light, but a pilot of seconds; its report says under "texels" and
+                               "predicted_seconds" how much work the other settings are, on this machine */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

@@ -23,6 +23,7 @@ ajar_settings checked_settings(const ajar_settings* settings) {
     if (s.positions_per_texel == 0 || s.positions_per_texel > 16) fail("positions_per_texel must lie in 1..16");
     if (s.combinations > AJAR_COMBINATIONS_ALL) fail("combinations has an unknown value");
     if (s.light_patches > AJAR_LIGHT_PATCHES_RGB) fail("light_patches has an unknown value");
+    if (s.trial > 1) fail("trial must be 0 or 1");
     if (!(s.term_threshold >= 0.0f) || s.term_threshold > 1.0f) fail("term_threshold must lie in 0..1");
     if (!(s.door_rays >= 0.0f) || s.door_rays > 1.0f) fail("door_rays must lie in 0..1");
     if (s.check_points > (1u << 20)) fail("check_points must be 1048576 at most");

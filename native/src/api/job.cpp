@@ -64,9 +64,10 @@ void Job::bake(Progress& progress) {
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
     const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress};
-    const double store = settings_.time_limit > 0.0f ? seconds_to_store(pool.size()) : 0.0;
+    const double store = settings_.time_limit > 0.0f || settings_.trial != 0 ? seconds_to_store(pool.size()) : 0.0;
     output_.bake = scene.elements.empty() ? Baker(gather, settings_, pool, progress, store).run()
                                           : TermBaker(gather, settings_, pool, progress, store).run();
+    if (settings_.trial != 0) return predict(tracer, pool, progress, store);
     progress.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
     warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
@@ -75,14 +76,29 @@ void Job::bake(Progress& progress) {
     for (Warning& w : check_warnings(output_.check, scene.name)) output_.warnings.push_back(std::move(w));
 }
 
+/// What a bake takes: the trial's own time, with the passes that it only tried a part of as long as all of them.
+void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store) {
+    progress.begin_stage(AJAR_STAGE_POST, 1.0f);
+    const TrialTimes& t = output_.bake.trial;
+    double tried = 0.0;
+    for (const uint32_t stage : {AJAR_STAGE_BOUNCES, AJAR_STAGE_GATHER}) tried += progress.stage_seconds(stage);
+    const double store = seconds_to_store * (output_.receivers.count() + t.lights);
+    double seconds = progress.elapsed() - tried + t.bounces + t.gather + store;
+    if (settings_.time_limit > 0.0f) seconds = std::min<double>(seconds, settings_.time_limit);
+    if (settings_.check_points != 0) seconds += try_check(*scene_, tracer, settings_, pool, progress);
+    output_.predicted_seconds = seconds;
+}
+
 const JobOutput& Job::output() const {
     task_.require_success();
+    if (settings_.trial != 0)
+        throw Error(AJAR_ERROR_STATE, "this job was a trial and baked no light; read its report", scene_->name);
     return output_;
 }
 
 std::string Job::report() const {
-    output();
-    return make_report(*this);
+    task_.require_success();
+    return settings_.trial != 0 ? make_trial_report(scene_->name, output_, settings_) : make_report(*this);
 }
 
 void check_cpu() {

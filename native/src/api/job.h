@@ -19,6 +19,7 @@ struct JobOutput {
     uint32_t emissive_triangles = 0;
     bool sky_sampled = false;
     SelfCheck check;
+    double predicted_seconds = 0.0; ///< of a trial
 };
 
 /// One bake on its own thread: runs the stages in order and keeps what came out.
@@ -37,6 +38,7 @@ public:
 
 private:
     void bake(Progress& progress);
+    void predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store);
 
     std::shared_ptr<const Snapshot> scene_;
     ajar_settings settings_;
@@ -46,6 +48,8 @@ private:
 
 /// Report of a finished job as JSON (schemas/report.schema.json).
 std::string make_report(const Job& job);
+/// That of a trial: its settings, texels and predicted_seconds.
+std::string make_trial_report(const std::string& scene, const JobOutput& output, const ajar_settings& settings);
 
 /// Throws Error(AJAR_ERROR_CPU) where the kernels' instructions are missing.
 void check_cpu();

@@ -184,4 +184,15 @@ std::string make_report(const Job& job) {
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 
+std::string make_trial_report(const std::string& scene, const JobOutput& output, const ajar_settings& settings) {
+    const json report = {{"version", 1},
+                         {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT},
+                         {"name", scene},
+                         {"result", "trial"},
+                         {"settings", settings_json(settings)},
+                         {"texels", output.receivers.count()},
+                         {"predicted_seconds", output.predicted_seconds}};
+    return report.dump(2, ' ', false, json::error_handler_t::replace);
+}
+
 } // namespace ajar

@@ -27,6 +27,20 @@ Vec3 all_on(const BakedPages& pages, uint32_t texel) {
     return sum;
 }
 
+/// The truth at random texels.
+ReferenceResult trace_points(const Snapshot& scene, const Tracer& tracer, const ajar_settings& settings,
+                             ThreadPool& pool, Progress& progress) {
+    ReferenceSettings s;
+    s.points = settings.check_points;
+    s.bounces = settings.bounces;
+    s.batches = kBatches;
+    s.seed = settings.seed;
+    s.point_seed = kPointSeed;
+    s.by_texel = s.whole_texels = true;
+    s.weights.assign(scene.elements.size(), 1.0f);
+    return trace_reference(scene, tracer, s, pool, progress);
+}
+
 std::string percent(double share) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f %%", 100.0 * share);
@@ -56,16 +70,8 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPag
                      Progress& progress) {
     SelfCheck check;
     const double start = progress.elapsed();
-    ReferenceSettings s;
-    s.points = settings.check_points;
-    s.bounces = settings.bounces;
-    s.batches = kBatches;
-    s.seed = settings.seed;
-    s.point_seed = kPointSeed;
-    s.by_texel = s.whole_texels = true;
-    s.weights.assign(scene.elements.size(), 1.0f);
     std::vector<CheckPoint> points;
-    for (const ReferenceValue& v : trace_reference(scene, tracer, s, pool, progress).values) {
+    for (const ReferenceValue& v : trace_points(scene, tracer, settings, pool, progress).values) {
         const Page& page = scene.pages[v.point.page];
         const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
         if (pages.validity[texel] != 1.0f) continue;
@@ -79,6 +85,13 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPag
             check.bounce_gain = std::max(check.bounce_gain, bounce_means[b] / bounce_means[b - 1]);
     check.seconds = progress.elapsed() - start;
     return check;
+}
+
+double try_check(const Snapshot& scene, const Tracer& tracer, const ajar_settings& settings, ThreadPool& pool,
+                 Progress& progress) {
+    const double start = progress.elapsed();
+    trace_points(scene, tracer, settings, pool, progress);
+    return progress.elapsed() - start;
 }
 
 std::vector<Warning> check_warnings(const SelfCheck& c, const std::string& scene_name) {

@@ -22,6 +22,10 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPag
                      const std::vector<double>& bounce_means, const ajar_settings& settings, ThreadPool& pool,
                      Progress& progress);
 
+/// Seconds that a check takes: those of its reference, which is traced for that and dropped.
+double try_check(const Snapshot& scene, const Tracer& tracer, const ajar_settings& settings, ThreadPool& pool,
+                 Progress& progress);
+
 /// One texel of both answers: luminance and its standard error, W/m^2.
 struct CheckPoint {
     float baked, baked_error, reference, reference_error;

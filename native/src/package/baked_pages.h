@@ -22,7 +22,7 @@ struct BakedPages {
     std::vector<Vec3> irradiance, albedo;
     std::vector<float> standard_error, samples, validity;
     std::vector<float> total_error; ///< standard error with everything open, present and lit; empty without elements
-    std::vector<float> sh_rgb; ///< [texels][27] or empty
+    std::vector<float> sh_rgb;      ///< [texels][27] or empty
     std::vector<uint32_t> packed_irradiance, packed_direction;
     std::vector<std::vector<Vec3>> bounces;
     std::vector<BakedTerm> terms; ///< all but the base, which the arrays above hold

@@ -6,6 +6,7 @@
 
 #include "pass/gather_pace.h"
 #include "pass/term_result.h"
+#include "pass/trial_gather.h"
 
 namespace ajar {
 
@@ -30,6 +31,7 @@ struct BakeResult {
 
     uint32_t bright_texels = 0;     ///< aimed at by the final gather
     float error_calibration = 1.0f; ///< measured standard error over the strata estimate
+    TrialTimes trial;               ///< of a trial, which leaves the arrays above unfinished
     bool time_limited = false;      ///< the time limit, not the target, set the ray counts
 };
 
@@ -64,6 +66,7 @@ private:
     FurtherRays refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
                        TileLight& light);
     void final_gather();
+    void bounces();
     void gather_in_rounds();
     void finish_tile(size_t tile);
     void calibrate_error();

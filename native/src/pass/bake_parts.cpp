@@ -10,7 +10,7 @@ constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces af
 constexpr uint32_t kLeastBounceSamples = 16;
 constexpr size_t kCalibrationStep = 4; ///< every n-th tile of many is estimated twice
 constexpr size_t kLeastTwins = 16;     ///< tiles, if there are as many
-constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
+constexpr float kQuadNormal = 0.95f;   ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 } // namespace
 

@@ -12,10 +12,10 @@ namespace ajar {
 
 inline constexpr uint32_t kSourceSamples = 16; ///< emitter samples per receiver that feed the bounces
 inline constexpr uint32_t kPilotRays = 32;
-inline constexpr uint32_t kPilotParts = 4;      ///< of each tile: its light may differ much from place to place
-inline constexpr uint32_t kPilotReceivers = 8;  ///< of each part
-inline constexpr double kPlannedPart = 0.97;    ///< of the time left for the final gather; checks of the error follow
-inline constexpr float kFinalShare = 0.5f;      ///< cosine share of the final rays (algorithms.md 1.10)
+inline constexpr uint32_t kPilotParts = 4;     ///< of each tile: its light may differ much from place to place
+inline constexpr uint32_t kPilotReceivers = 8; ///< of each part
+inline constexpr double kPlannedPart = 0.97;   ///< of the time left for the final gather; checks of the error follow
+inline constexpr float kFinalShare = 0.5f;     ///< cosine share of the final rays (algorithms.md 1.10)
 
 enum BakeSalt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
 

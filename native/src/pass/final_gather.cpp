@@ -155,7 +155,15 @@ void Baker::final_gather() {
     result_.samples.resize(n);
     result_.inside.resize(n);
     further_.resize(s_.receivers.tiles.size());
-    if (pace_ == nullptr)
+    if (settings_.trial != 0)
+        gather_some(
+            s_.receivers, pool_, progress_,
+            [&](size_t i) {
+                finish_tile(i);
+                return 0;
+            },
+            result_.trial);
+    else if (pace_ == nullptr)
         pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) { finish_tile(i); });
     else
         gather_in_rounds();

@@ -194,17 +194,27 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
                                       level > light.standard_error);
 }
 
+void TermBaker::bounces() {
+    const uint32_t wanted = settings_.bounce_samples;
+    if (settings_.trial != 0) settings_.bounce_samples = trial_bounce_samples(wanted);
+    const double rays = settings_.bounce_samples;
+    for (uint32_t b = 1; b < settings_.bounces; ++b) {
+        const double start = progress_.elapsed();
+        bounce(b);
+        if (settings_.trial != 0)
+            result_.trial.bounces += (progress_.elapsed() - start) * wanted / rays;
+        else
+            settings_.bounce_samples =
+                bounce_samples_in_time(settings_, start, progress_.elapsed(), settings_.bounces - 1 - b);
+    }
+}
+
 BakeResult TermBaker::run() {
     if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
     progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
-    for (uint32_t b = 1; b < settings_.bounces; ++b) {
-        const double start = progress_.elapsed();
-        bounce(b);
-        settings_.bounce_samples =
-            bounce_samples_in_time(settings_, start, progress_.elapsed(), settings_.bounces - 1 - b);
-    }
+    bounces();
     radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
                               s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
@@ -212,6 +222,7 @@ BakeResult TermBaker::run() {
     std::vector<RayPlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
     final_gather(plan);
+    if (settings_.trial != 0) return std::move(result_);
     calibrate_error(plan);
     for (uint32_t r = 0; r < s_.receivers.count(); ++r) result_.source.push_back(source_.total(r));
     return std::move(result_);

@@ -121,6 +121,7 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
         store_tile(tile, plan[i], estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal)), tiles[i]);
         return tiles[i].light.size();
     };
+    if (settings_.trial != 0) return gather_some(s_.receivers, pool_, progress_, finish_tile, result_.trial);
     if (settings_.time_limit > 0.0f)
         gather_in_rounds(plan, finish_tile);
     else

@@ -34,11 +34,11 @@ struct LightmapReceivers {
     std::vector<uint8_t> cut;       ///< a wall runs through the texel; its positions lie on one side of it
     std::vector<uint8_t>
         shares; ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
-    std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
-    std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
+    std::vector<uint32_t> of_texel;   ///< [page texels] receiver, or kNoReceiver
+    std::vector<uint8_t> ring;        ///< outside its chart; only bilinear lookups touch it
     std::vector<uint32_t> moved_row;  ///< [count] row of moved or kNoReceiver; empty: nothing is moved
     std::vector<MovedPosition> moved; ///< [rows][positions_per_texel]
-    uint64_t clamped_albedo = 0;    ///< receivers whose reflectance reached kMaxReflectance
+    uint64_t clamped_albedo = 0;      ///< receivers whose reflectance reached kMaxReflectance
     uint64_t pushed_positions = 0;
 
     uint32_t count() const { return static_cast<uint32_t>(texel.size()); }
@@ -64,8 +64,8 @@ std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapRece
                                        uint32_t r);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
-/// (algorithms.md 9.1, 9.2, 9.4), of switchable ones while these are there. They do not depend on the seed of the bake: what side of a wall a texel
-/// shows stays. Adds warnings about UVs to warnings.
+/// (algorithms.md 9.1, 9.2, 9.4), of switchable ones while these are there. They do not depend on the seed of the bake:
+/// what side of a wall a texel shows stays. Adds warnings about UVs to warnings.
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
                                  uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
                                  std::vector<Warning>& warnings);

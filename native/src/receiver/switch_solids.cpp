@@ -54,8 +54,8 @@ MovedPosition SwitchSolids::move_out(const Vec3& p, const Frame& frame, float te
     for (const Vec3& w : {frame.x, -frame.x, frame.y, -frame.y}) {
         const Hit hit = tracer_.intersect({p, w, 0.0f, nearest}, kMaskGatherAll);
         if (hit.triangle == kMiss || !hit.back || scene_.presence(hit.triangle).element != solid.element) continue;
-        const Vec3 before = p + w * hit.t + scene_.geometric_normal(hit.triangle) *
-                                                (kClearance * tracer_.offset_distance(p));
+        const Vec3 before =
+            p + w * hit.t + scene_.geometric_normal(hit.triangle) * (kClearance * tracer_.offset_distance(p));
         // A face that lies on a wall leads into the wall.
         const Hit wall = tracer_.intersect({before, w, 0.0f, kReach * texel}, kMaskGather);
         if (wall.triangle != kMiss && wall.back) continue;

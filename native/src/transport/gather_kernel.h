@@ -84,8 +84,7 @@ struct Gatherer {
         for (uint32_t lane = 0; lane < kLanes; ++lane) f.valid[lane] = lane < count ? -1 : 0;
         tile_rays.aim(first, stratum, f.packet, f.local);
         if (!g.receivers.moved_row.empty())
-            for (uint32_t lane = 0; lane < count; ++lane)
-                f.position[lane] = tile_rays.position(first + lane, stratum);
+            for (uint32_t lane = 0; lane < count; ++lane) f.position[lane] = tile_rays.position(first + lane, stratum);
         if (o.aims != nullptr)
             for (uint32_t lane = 0; lane < count; ++lane) {
                 const uint32_t position = tile_rays.position(first + lane, stratum);
@@ -99,8 +98,7 @@ struct Gatherer {
     void shoot_aimed(uint32_t first, uint32_t aim, uint32_t number, uint32_t sample) {
         Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            f.valid[lane] =
-                first + lane < tile.count && aim_lane(first + lane, lane, aim, number, f) ? -1 : 0;
+            f.valid[lane] = first + lane < tile.count && aim_lane(first + lane, lane, aim, number, f) ? -1 : 0;
             if (f.valid[lane] != 0) continue;
             f.packet.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
             f.local.set(lane, Vec3(0, 0, 1), 0.0f);

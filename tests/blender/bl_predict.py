@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# timeout: 300
+"""ajar.predict from a script: times of three presets, the file left as it was, and cancel."""
+import os
+import sys
+import tempfile
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from support.addon import build_room, load_addon  # noqa: E402
+
+load_addon()
+from ajar import job  # noqa: E402
+
+FOLDER = os.environ.get("AJAR_TEST_DIR") or tempfile.mkdtemp(prefix="ajar-test-")
+
+
+def check_cancel():
+    """Cancel while the worker runs leaves no job and no prediction."""
+    stepped, step = job.manager, job.manager.step
+
+    def cancel_in_worker():
+        if stepped.job.worker is not None and stepped.status.fraction > 0.2:
+            stepped.cancel()
+        return step()
+
+    stepped.step = cancel_in_worker
+    try:
+        assert bpy.ops.ajar.predict() == {"CANCELLED"}
+    finally:
+        del stepped.step
+    assert stepped.last.result == "cancelled", stepped.last.message
+    assert not stepped.running and stepped.predicted is None
+
+
+def check_times(scene):
+    """Every preset has a time, better ones take longer; UVs and preview are as before."""
+    assert bpy.ops.ajar.predict() == {"FINISHED"}
+    found = job.manager.predicted
+    assert list(found.seconds) == ["DRAFT", "PREVIEW", "PRODUCTION"], found
+    assert 0.0 < found.seconds["DRAFT"] < found.seconds["PRODUCTION"], found
+    assert found.scene == scene.name and found.density == 2.0 and found.texels > 100, found
+    assert "AjarLightmap" not in bpy.data.meshes["Room"].uv_layers
+    assert scene.objects["Room"].ajar.lightmap_page == -1 and not scene.ajar.preview
+    assert "Production: about" in job.manager.last.message, job.manager.last.message
+
+
+def main():
+    """All of it on a small room."""
+    scene = build_room()
+    scene.ajar.texels_per_meter = 2.0
+    scene.ajar.output_dir = FOLDER
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(FOLDER, "level.blend"))
+    check_cancel()
+    check_times(scene)
+    print("bl_predict: ok", flush=True)
+
+
+main()
