@@ -46,10 +46,21 @@ class Teller:
         self._host.send("progress", stage=stage, fraction=round(done / total, 5), remaining=total - done)
 
 
+def require_numpy():
+    """Blender brings numpy with it, but it may run its scripts with an interpreter that has none."""
+    from ajar.bridge import abi
+    from ajar.bridge.library import BakeError
+
+    if importlib.util.find_spec("numpy") is None:
+        raise BakeError(abi.ERROR_INPUT, f"measuring needs numpy: install it for {sys.executable}", "python")
+
+
 def measure(library, host, arguments):
     """Runs a study; returns the exit code."""
-    from ajar.accuracy import engine, study
     from ajar.bridge.worker import CANCELLED, DONE
+
+    require_numpy()
+    from ajar.accuracy import engine, study
 
     wishes = study.Wishes(**json.loads((arguments.directory / REQUEST).read_text(encoding="utf-8")))
 

@@ -10,8 +10,9 @@ from array import array
 
 import pytest
 
-from blender_addon.bridge.client import WORKER, WorkerClient
+from blender_addon.bridge.client import ACCURACY_WORKER, WORKER, WorkerClient
 from blender_addon.bridge.snapshot_io import Reader, Writer
+from blender_addon.bridge.worker import WISHES
 
 IDENTITY = [1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0]
 CORNERS = [0, 1, 2, 0, 2, 3]
@@ -256,3 +257,26 @@ def test_worker_uses_only_the_standard_library():
         "bad = {m.split('.')[0] for m in sys.modules} & {'numpy', 'bpy', 'blender_addon'}\nassert not bad, bad"
     )
     subprocess.run([sys.executable, "-S", "-s", "-E", "-B", "-c", code], check=True, capture_output=True)
+
+
+def test_predictions_for_several_settings(tmp_path, library):
+    folder = write_snapshot(tmp_path / "shot", 64)
+    wishes = {name: {"samples": 64, "bounces": 2, "noise_target": noise} for name, noise in (("A", 0.2), ("B", 0.01))}
+    (folder / WISHES).write_text(json.dumps(wishes), encoding="utf-8")
+    events = run(
+        WorkerClient.predict(folder, python=sys.executable, environment={"AJAR_LIBRARY": str(library)})
+    )
+    assert events[-1]["event"] == "done", events[-1]
+    assert list(events[-1]["predicted"]) == ["A", "B"] and events[-1]["texels"] > 1000
+    assert all(seconds > 0.0 for seconds in events[-1]["predicted"].values())
+    shares = [e["fraction"] for e in events if e["event"] == "progress"]
+    assert shares == sorted(shares) and shares[-1] == 1.0
+
+
+def test_measuring_without_numpy_says_so(tmp_path, library):
+    command = [sys.executable, "-S", "-s", "-E", "-B", str(ACCURACY_WORKER), str(tmp_path), "--out", str(tmp_path)]
+    ended = subprocess.run(
+        command, stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, "AJAR_LIBRARY": str(library)}
+    )
+    last = json.loads(ended.stdout.splitlines()[-1])
+    assert last["event"] == "error" and "numpy" in last["message"] and sys.executable in last["message"]
