@@ -2,6 +2,7 @@
 #include "pass/noise_plan.h"
 
 #include <bit>
+#include <numbers>
 
 namespace ajar {
 
@@ -20,8 +21,10 @@ uint32_t round_up(float rays, uint32_t most) {
     return up <= most ? up : most < kStep ? std::bit_floor(most) : most / kStep * kStep;
 }
 
+/// The power of two next to v on a logarithmic scale.
 uint32_t power_of_two(double v, uint32_t low, uint32_t high) {
-    return std::bit_ceil(std::clamp(static_cast<uint32_t>(std::min(v, 1e9)), low, high));
+    const auto nearest = static_cast<uint32_t>(std::min(v / std::numbers::sqrt2, 1e9));
+    return std::bit_ceil(std::clamp(nearest, low, high));
 }
 
 uint32_t left(uint32_t most, uint32_t done) { return most > done ? most - done : 0; }
