@@ -64,6 +64,22 @@ TEST(Report, StatesTheErrorOfLightInSetsToo) {
     EXPECT_NEAR(told / spread(light[0], light[1]), 1.0, 0.25);
 }
 
+TEST(Report, MemoryIsOnlyForWhatTheSceneCallsFor) {
+    kit::Scene plain, elements;
+    build_room(plain);
+    build_room(elements, true);
+    const auto parts = [](const kit::Scene& scene) {
+        const kit::Bake bake(scene, kit::settings(2, 64));
+        return nlohmann::json::parse(bake.report()).at("memory_parts");
+    };
+    const nlohmann::json without = parts(plain), with = parts(elements);
+    EXPECT_EQ(without.at("terms"), 0);
+    EXPECT_EQ(without.at("spherical_harmonics_layers"), 0);
+    EXPECT_GT(with.at("terms"), 48 * 48 * 4);
+    EXPECT_GT(without.at("pages"), 48 * 48 * 4);
+    EXPECT_EQ(without.at("receivers"), with.at("receivers"));
+}
+
 TEST(Trial, PredictsATimeAndHoldsNoLight) {
     for (const bool set : {false, true}) {
         kit::Scene scene;

@@ -261,7 +261,10 @@ def test_worker_uses_only_the_standard_library():
 
 def test_predictions_for_several_settings(tmp_path, library):
     folder = write_snapshot(tmp_path / "shot", 64)
-    wishes = {name: {"samples": 64, "bounces": 2, "noise_target": noise} for name, noise in (("A", 0.2), ("B", 0.01))}
+    wishes = {
+        name: {"samples": 64, "bounces": 2, "noise_target": noise}
+        for name, noise in (("A", 0.2), ("B", 0.01))
+    }
     (folder / WISHES).write_text(json.dumps(wishes), encoding="utf-8")
     events = run(
         WorkerClient.predict(folder, python=sys.executable, environment={"AJAR_LIBRARY": str(library)})
@@ -274,9 +277,22 @@ def test_predictions_for_several_settings(tmp_path, library):
 
 
 def test_measuring_without_numpy_says_so(tmp_path, library):
-    command = [sys.executable, "-S", "-s", "-E", "-B", str(ACCURACY_WORKER), str(tmp_path), "--out", str(tmp_path)]
+    command = [
+        sys.executable,
+        "-S",
+        "-s",
+        "-E",
+        "-B",
+        str(ACCURACY_WORKER),
+        str(tmp_path),
+        "--out",
+        str(tmp_path),
+    ]
     ended = subprocess.run(
-        command, stdin=subprocess.DEVNULL, capture_output=True, env={**os.environ, "AJAR_LIBRARY": str(library)}
+        command,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        env={**os.environ, "AJAR_LIBRARY": str(library)},
     )
     last = json.loads(ended.stdout.splitlines()[-1])
     assert last["event"] == "error" and "numpy" in last["message"] and sys.executable in last["message"]

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/job.h"
+#include "api/memory_report.h"
 
 namespace ajar {
 
@@ -150,6 +151,12 @@ json check_json(const SelfCheck& c) {
             {"bounce_gain", c.bounce_gain}, {"seconds", c.seconds}};
 }
 
+json memory_json(const Job& job, const JobOutput& o) {
+    json parts = json::object();
+    for (const auto& [name, bytes] : memory_parts(job.scene(), o)) parts[name] = bytes;
+    return parts;
+}
+
 uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -179,7 +186,8 @@ std::string make_report(const Job& job) {
         {"effects", effects_json(job.scene(), o, job.settings())},
         {"terms", terms_json(job.scene(), o.pages)},
         {"warnings", warnings},
-        {"memory_bytes", peak_memory()}};
+        {"memory_bytes", peak_memory()},
+        {"memory_parts", memory_json(job, o)}};
     if (job.settings().check_points != 0) report["self_check"] = check_json(o.check);
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
