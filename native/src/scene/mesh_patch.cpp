@@ -45,6 +45,12 @@ std::unordered_map<uint64_t, Edge> find_edges(const Mesh& mesh) {
     return edges;
 }
 
+Vec3 normal_of(const Mesh& mesh, uint32_t triangle) {
+    const uint32_t* v = &mesh.corner_vertex[size_t{triangle} * 3];
+    const Vec3 a = mesh.positions[v[0]];
+    return normalize_or(glm::cross(mesh.positions[v[1]] - a, mesh.positions[v[2]] - a), Vec3(0.0f));
+}
+
 uint32_t root(std::vector<uint32_t>& parent, uint32_t i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
@@ -52,7 +58,7 @@ uint32_t root(std::vector<uint32_t>& parent, uint32_t i) {
 
 } // namespace
 
-MeshPatches find_patches(const Mesh& mesh) {
+MeshPatches find_patches(const Mesh& mesh, float least_cosine) {
     std::vector<uint32_t> parent(mesh.triangle_count());
     std::iota(parent.begin(), parent.end(), 0u);
     MeshPatches out;
@@ -63,6 +69,9 @@ MeshPatches find_patches(const Mesh& mesh) {
         const bool joins = e.along == 1 && e.against == 1;
         out.closed = out.closed && joins;
         if (!joins) continue;
+        if (least_cosine > -1.0f &&
+            glm::dot(normal_of(mesh, e.triangle_along), normal_of(mesh, e.triangle_against)) < least_cosine)
+            continue;
         const uint32_t a = root(parent, e.triangle_along), b = root(parent, e.triangle_against);
         parent[std::max(a, b)] = std::min(a, b);
     }

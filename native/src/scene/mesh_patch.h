@@ -14,6 +14,7 @@ struct MeshPatches {
     bool closed = false; ///< every edge joins exactly two triangles of like orientation
 };
 
-MeshPatches find_patches(const Mesh& mesh);
+/// least_cosine: of the angle between the normals of two triangles that hang together; -1: any.
+MeshPatches find_patches(const Mesh& mesh, float least_cosine = -1.0f);
 
 } // namespace ajar

@@ -2,6 +2,7 @@
 #include "transport/lit_side.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/owen_sobol.h"
 #include "sampling/warp.h"
@@ -13,7 +14,8 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kMostPoints = 48; ///< per patch
-constexpr uint32_t kLeastPoints = 6;
+constexpr uint32_t kLeastPoints = 6, kLeastFacetPoints = 24;
+constexpr float kFacetCosine = 0.7f; ///< of the steepest angle inside a facet
 constexpr uint32_t kRays = 8;        ///< per point and side
 constexpr uint32_t kLampSamples = 2; ///< per point and side
 constexpr int kMostRounds = 4;       ///< a turned wall changes what its neighbours look at
@@ -44,15 +46,17 @@ struct Finder {
     const EmitterSet emitters;
     std::vector<Patch> patches;
     std::vector<uint8_t> turned; ///< per triangle
+    uint32_t least_points = kLeastPoints;
 
     Finder(const Snapshot& s, ThreadPool& pool, Progress& progress)
         : scene(s), tracer(s), emitters(s, pool, progress), turned(s.triangles.size(), 0) {
-        collect();
+        collect(-1.0f);
     }
 
-    void collect() {
+    void collect(float least_cosine) {
+        patches.clear();
         std::vector<MeshPatches> of_mesh;
-        for (const Mesh& m : scene.meshes) of_mesh.push_back(find_patches(m));
+        for (const Mesh& m : scene.meshes) of_mesh.push_back(find_patches(m, least_cosine));
         std::vector<uint32_t> first;
         for (const Instance& i : scene.instances) {
             first.push_back(static_cast<uint32_t>(patches.size()));
@@ -73,7 +77,7 @@ struct Finder {
     }
 
     uint32_t point_count(const Patch& p) const {
-        return std::clamp(static_cast<uint32_t>(p.triangles.size()), kLeastPoints, kMostPoints);
+        return std::clamp(static_cast<uint32_t>(p.triangles.size()), least_points, kMostPoints);
     }
 
     /// A ray's share in what a side sees. Tinted surfaces say nothing, from either side.
@@ -157,6 +161,11 @@ struct Finder {
         return (patch.closed || !scene.sky.lit()) && front.fronts < 0.25f && back.misses < kEnclosed &&
                back.lamps >= 2.0f * kFewLamps;
     }
+    /// No lamp shines on the front of a facet and many on its back.
+    static bool is_clearly_hidden(const View& front, const View& back) {
+        return is_hidden(front, back) && front.lamps == 0.0f && back.lamps >= 4.0f * kFewLamps &&
+               front.lit < 0.5f * back.lit;
+    }
     /// Whether the side that the normals point away from is the one to bake.
     bool should_turn(const Patch& patch, const View& front, const View& back) const {
         if (is_over_void(front, back) || is_hidden(front, back)) return true;
@@ -165,12 +174,10 @@ struct Finder {
     }
 };
 
-} // namespace
-
-SurfaceSides find_lit_sides(const Snapshot& scene, ThreadPool& pool, Progress& progress) {
-    Finder f(scene, pool, progress);
-    SurfaceSides out{std::vector<uint8_t>(scene.triangles.size(), 0), std::vector<uint8_t>(scene.instances.size(), 0)};
-    std::vector<uint8_t> turn(f.patches.size(), 0), lit_inside(f.patches.size(), 0);
+/// Turns patches until no more look the wrong way; is_wrong: of a patch that is not turned yet, by its number.
+void turn_patches(Finder& f, SurfaceSides& out, ThreadPool& pool, Progress& progress,
+                  const std::function<bool(size_t)>& is_wrong) {
+    std::vector<uint8_t> turn(f.patches.size(), 0);
     for (int round = 0; round < kMostRounds; ++round) {
         std::vector<uint8_t> next = turn;
         f.turned = out.turned;
@@ -178,20 +185,44 @@ SurfaceSides find_lit_sides(const Snapshot& scene, ThreadPool& pool, Progress& p
             f.patches.size(), progress,
             [&](size_t i) {
                 const Patch& p = f.patches[i];
-                if (p.triangles.empty() || !p.may_turn || turn[i] != 0) return;
-                const auto seed = hash32(static_cast<uint32_t>(i));
-                const View back = f.view(p, true, hash_combine(seed, 1u));
-                lit_inside[i] = p.closed && back.lamps > 0.0f;
-                next[i] = f.should_turn(p, f.view(p, false, seed), back);
+                if (p.triangles.empty() || !p.may_turn || out.turned[p.triangles[0]] != 0) return;
+                next[i] = is_wrong(i);
             },
             false);
         if (next == turn) break;
         turn = next;
-        for (size_t i = 0; i < turn.size(); ++i)
-            for (const uint32_t t : f.patches[i].triangles) out.turned[t] = turn[i];
+        for (size_t i = 0; i < turn.size(); ++i) {
+            if (turn[i] == 0) continue;
+            out.hollow[f.patches[i].instance] = 1;
+            for (const uint32_t t : f.patches[i].triangles) out.turned[t] = 1;
+        }
     }
-    for (size_t i = 0; i < turn.size(); ++i)
-        if (turn[i] != 0 || lit_inside[i] != 0) out.hollow[f.patches[i].instance] = 1;
+}
+
+} // namespace
+
+SurfaceSides find_lit_sides(const Snapshot& scene, ThreadPool& pool, Progress& progress) {
+    Finder f(scene, pool, progress);
+    SurfaceSides out{std::vector<uint8_t>(scene.triangles.size(), 0), std::vector<uint8_t>(scene.instances.size(), 0)};
+    std::vector<uint8_t> lit_inside(f.patches.size(), 0);
+    const auto views = [&](size_t i) {
+        const auto seed = hash32(static_cast<uint32_t>(i));
+        return std::pair{f.view(f.patches[i], false, seed), f.view(f.patches[i], true, hash_combine(seed, 1u))};
+    };
+    turn_patches(f, out, pool, progress, [&](size_t i) {
+        const auto [front, back] = views(i);
+        lit_inside[i] = f.patches[i].closed && back.lamps > 0.0f;
+        return f.should_turn(f.patches[i], front, back);
+    });
+    for (size_t i = 0; i < lit_inside.size(); ++i)
+        if (lit_inside[i] != 0) out.hollow[f.patches[i].instance] = 1;
+    // Where turned and right surfaces hang together, the patch as a whole does not tell; its facets may.
+    f.collect(kFacetCosine);
+    f.least_points = kLeastFacetPoints;
+    turn_patches(f, out, pool, progress, [&](size_t i) {
+        const auto [front, back] = views(i);
+        return !f.patches[i].closed && f.is_clearly_hidden(front, back);
+    });
     return out;
 }
 
