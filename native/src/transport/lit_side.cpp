@@ -76,6 +76,13 @@ struct Finder {
         }
     }
 
+    std::vector<uint32_t> patch_of_triangles() const {
+        std::vector<uint32_t> out(scene.triangles.size(), 0);
+        for (uint32_t i = 0; i < patches.size(); ++i)
+            for (const uint32_t t : patches[i].triangles) out[t] = i;
+        return out;
+    }
+
     uint32_t point_count(const Patch& p) const {
         return std::clamp(static_cast<uint32_t>(p.triangles.size()), least_points, kMostPoints);
     }
@@ -216,13 +223,20 @@ SurfaceSides find_lit_sides(const Snapshot& scene, ThreadPool& pool, Progress& p
     });
     for (size_t i = 0; i < lit_inside.size(); ++i)
         if (lit_inside[i] != 0) out.hollow[f.patches[i].instance] = 1;
-    // Where turned and right surfaces hang together, the patch as a whole does not tell; its facets may.
+    // Where turned and right surfaces hang together, the patch as a whole does not tell; its facets may, and one
+    // that surely looks the wrong way lends its word to the others of its patch.
+    const std::vector<uint32_t> patch = f.patch_of_triangles();
+    std::vector<uint8_t> has_turned(f.patches.size(), 0);
     f.collect(kFacetCosine);
     f.least_points = kLeastFacetPoints;
-    turn_patches(f, out, pool, progress, [&](size_t i) {
-        const auto [front, back] = views(i);
-        return !f.patches[i].closed && f.is_clearly_hidden(front, back);
-    });
+    for (const bool sure : {true, false}) {
+        turn_patches(f, out, pool, progress, [&](size_t i) {
+            if (f.patches[i].closed || (!sure && has_turned[patch[f.patches[i].triangles[0]]] == 0)) return false;
+            const auto [front, back] = views(i);
+            return sure ? f.is_clearly_hidden(front, back) : f.is_hidden(front, back);
+        });
+        for (size_t t = 0; t < patch.size(); ++t) has_turned[patch[t]] |= out.turned[t];
+    }
     return out;
 }
 
