@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
 
@@ -252,12 +252,6 @@ void seamed_sphere(kit::Scene& scene) {
     scene.commit();
 }
 
-uint32_t bits_of(float v) {
-    uint32_t out;
-    std::memcpy(&out, &v, sizeof out);
-    return out;
-}
-
 TEST(Stitching, ChangesTheBrightnessNotTheDirectionOfALight) {
     kit::Scene scene;
     seamed_sphere(scene);
@@ -268,8 +262,8 @@ TEST(Stitching, ChangesTheBrightnessNotTheDirectionOfALight) {
     const kit::Layer a = plain.layer(AJAR_LAYER_AHD), b = stitched.layer(AJAR_LAYER_AHD);
     int brightness = 0, direction = 0;
     for (size_t i = 0; i < a.data.size(); i += 2) {
-        brightness += bits_of(a.data[i]) != bits_of(b.data[i]);
-        direction += bits_of(a.data[i + 1]) != bits_of(b.data[i + 1]);
+        brightness += std::bit_cast<uint32_t>(a.data[i]) != std::bit_cast<uint32_t>(b.data[i]);
+        direction += std::bit_cast<uint32_t>(a.data[i + 1]) != std::bit_cast<uint32_t>(b.data[i + 1]);
     }
     EXPECT_GT(brightness, 100);
     EXPECT_EQ(direction, 0);

@@ -72,7 +72,8 @@ void Job::bake(Progress& progress) {
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
     warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
     if (settings_.check_points == 0) return;
-    output_.check = check_bake(scene, tracer, output_.pages, output_.bake.bounce_means, settings_, pool, progress);
+    output_.check =
+        check_bake(scene, tracer, output_.receivers, output_.bake, output_.pages, settings_, pool, progress);
     for (Warning& w : check_warnings(output_.check, scene.name)) output_.warnings.push_back(std::move(w));
 }
 

@@ -14,7 +14,7 @@ namespace ajar {
 struct JobOutput {
     BakedPages pages;
     LightmapReceivers receivers;
-    BakeResult bake; ///< arrays per receiver that the pages copied are emptied
+    BakeResult bake;
     std::vector<Warning> warnings;
     uint32_t emissive_triangles = 0;
     bool sky_sampled = false;

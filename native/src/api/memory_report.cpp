@@ -33,7 +33,7 @@ uint64_t term_bytes(const JobOutput& o) {
     const TermResult& t = o.bake.terms;
     uint64_t sum = bytes(t.terms, t.first, t.light, t.discarded) + bytes(o.bake.total, o.bake.total_error);
     for (const BakedTerm& b : o.pages.terms) sum += bytes(b.elements, b.texel, b.irradiance, b.packed_direction);
-    return sum + bytes(o.pages.total_error);
+    return sum;
 }
 
 uint64_t page_bytes(const BakedPages& p) {

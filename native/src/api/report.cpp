@@ -51,7 +51,7 @@ std::vector<float> relative_errors(const JobOutput& o) {
     std::vector<float> errors;
     for (size_t r = 0; r < levels.size(); ++r)
         if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)
-            errors.push_back(o.pages.all_on_error()[o.receivers.texel[r]] / (levels[r] + floor));
+            errors.push_back(o.bake.all_on_error()[r] / (levels[r] + floor));
     std::sort(errors.begin(), errors.end());
     return errors;
 }

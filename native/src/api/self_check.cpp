@@ -65,8 +65,8 @@ void compare_points(const std::vector<CheckPoint>& points, SelfCheck& check) {
     check.far_share = static_cast<double>(far) / static_cast<double>(points.size());
 }
 
-SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPages& pages,
-                     const std::vector<double>& bounce_means, const ajar_settings& settings, ThreadPool& pool,
+SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers,
+                     const BakeResult& bake, const BakedPages& pages, const ajar_settings& settings, ThreadPool& pool,
                      Progress& progress) {
     SelfCheck check;
     const double start = progress.elapsed();
@@ -75,14 +75,14 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPag
         const Page& page = scene.pages[v.point.page];
         const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
         if (pages.validity[texel] != 1.0f) continue;
-        points.push_back(
-            {luminance(all_on(pages, texel)), pages.all_on_error()[texel], luminance(v.irradiance), v.standard_error});
+        const float error = bake.all_on_error()[receivers.of_texel[texel]];
+        points.push_back({luminance(all_on(pages, texel)), error, luminance(v.irradiance), v.standard_error});
     }
     compare_points(points, check);
     // The first step may grow: direct light can fall where no lightmap is.
-    for (size_t b = 2; b < bounce_means.size(); ++b)
-        if (bounce_means[b - 1] > 0.0)
-            check.bounce_gain = std::max(check.bounce_gain, bounce_means[b] / bounce_means[b - 1]);
+    const std::vector<double>& means = bake.bounce_means;
+    for (size_t b = 2; b < means.size(); ++b)
+        if (means[b - 1] > 0.0) check.bounce_gain = std::max(check.bounce_gain, means[b] / means[b - 1]);
     check.seconds = progress.elapsed() - start;
     return check;
 }

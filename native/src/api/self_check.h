@@ -18,8 +18,8 @@ struct SelfCheck {
 };
 
 /// Traces the reference at settings.check_points texels and compares. Throws Cancelled.
-SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const BakedPages& pages,
-                     const std::vector<double>& bounce_means, const ajar_settings& settings, ThreadPool& pool,
+SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers,
+                     const BakeResult& bake, const BakedPages& pages, const ajar_settings& settings, ThreadPool& pool,
                      Progress& progress);
 
 /// Seconds that a check takes: those of its reference, which is traced for that and dropped.

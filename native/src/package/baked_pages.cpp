@@ -32,7 +32,6 @@ void Assembler::scatter() {
     const size_t texels = scene.texel_count();
     for (auto* v : {&out.irradiance, &out.albedo}) v->assign(texels, Vec3(0.0f));
     for (auto* v : {&out.standard_error, &out.samples, &out.validity}) v->assign(texels, 0.0f);
-    out.total_error.assign(result.total_error.empty() ? 0 : texels, 0.0f);
     out.bounces.assign(result.bounces.size(), std::vector<Vec3>(texels, Vec3(0.0f)));
     out.sh_rgb.assign(result.sh_rgb.empty() ? 0 : texels * 27, 0.0f);
     state.assign(texels, kUncovered);
@@ -44,7 +43,6 @@ void Assembler::scatter() {
         out.irradiance[t] = result.irradiance[r];
         out.albedo[t] = receivers.albedo[r];
         out.standard_error[t] = result.standard_error[r];
-        if (!out.total_error.empty()) out.total_error[t] = result.total_error[r];
         out.samples[t] = result.samples[r];
         for (size_t b = 0; b < out.bounces.size(); ++b) out.bounces[b][t] = result.bounces[b][r];
         for (size_t c = 0; c < (out.sh_rgb.empty() ? 0 : 27); ++c)

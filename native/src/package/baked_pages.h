@@ -21,16 +21,13 @@ struct BakedTerm {
 struct BakedPages {
     std::vector<Vec3> irradiance, albedo;
     std::vector<float> standard_error, samples, validity;
-    std::vector<float> total_error; ///< standard error with everything open, present and lit; empty without elements
-    std::vector<float> sh_rgb;      ///< [texels][27] or empty
+    std::vector<float> sh_rgb; ///< [texels][27] or empty
     std::vector<uint32_t> packed_irradiance, packed_direction;
     std::vector<std::vector<Vec3>> bounces;
     std::vector<BakedTerm> terms; ///< all but the base, which the arrays above hold
     uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
     uint64_t seam_points = 0;
     uint64_t clamped_texels = 0; ///< too bright for the packed format
-
-    const std::vector<float>& all_on_error() const { return total_error.empty() ? standard_error : total_error; }
 };
 
 /// Share of a receiver's rays that may meet the inside of solids before its light is distrusted.

@@ -112,27 +112,15 @@ EmitterSet Baker::find_bright_texels() {
     return s_.emitters.with_bright_texels(std::move(bright));
 }
 
-void Baker::bounces() {
-    const uint32_t passes = settings_.bounces + (settings_.keep_bounces != 0 ? 1 : 0),
-                   wanted = settings_.bounce_samples;
-    if (settings_.trial != 0) settings_.bounce_samples = trial_bounce_samples(wanted);
-    const double rays = settings_.bounce_samples;
-    for (uint32_t b = 1; b < passes; ++b) {
-        set_radiance(current_);
-        const double start = progress_.elapsed();
-        bounce(b);
-        if (settings_.trial != 0)
-            result_.trial.bounces += (progress_.elapsed() - start) * wanted / rays;
-        else
-            settings_.bounce_samples = bounce_samples_in_time(settings_, start, progress_.elapsed(), passes - 1 - b);
-    }
-}
-
 BakeResult Baker::run() {
     progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     if (settings_.bounces > 0 || settings_.keep_bounces != 0) direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
-    bounces();
+    run_bounces(settings_.bounces + (settings_.keep_bounces != 0 ? 1 : 0), settings_, progress_, result_.trial,
+                [&](uint32_t b) {
+                    set_radiance(current_);
+                    bounce(b);
+                });
     if (settings_.bounces > 0) {
         // With every bounce kept apart the last one was made for show; the gather adds it itself.
         if (settings_.keep_bounces != 0)

@@ -29,6 +29,9 @@ struct BakeResult {
     std::vector<double> bounce_means; ///< mean luminance of each bounce's irradiance
     TermResult terms;                 ///< light of every term but the base, which the arrays above hold
 
+    /// Standard errors per receiver with everything open, present and lit.
+    const std::vector<float>& all_on_error() const { return total_error.empty() ? standard_error : total_error; }
+
     uint32_t bright_texels = 0;     ///< aimed at by the final gather
     float error_calibration = 1.0f; ///< measured standard error over the strata estimate
     TrialTimes trial;               ///< of a trial, which leaves the arrays above unfinished
@@ -66,7 +69,6 @@ private:
     FurtherRays refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
                        TileLight& light);
     void final_gather();
-    void bounces();
     void gather_in_rounds();
     void finish_tile(size_t tile);
     void calibrate_error();

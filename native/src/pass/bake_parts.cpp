@@ -130,4 +130,19 @@ uint32_t bounce_samples_in_time(const ajar_settings& settings, double start, dou
     return samples;
 }
 
+void run_bounces(uint32_t count, ajar_settings& settings, const Progress& progress, TrialTimes& trial,
+                 const std::function<void(uint32_t)>& bounce) {
+    const uint32_t wanted = settings.bounce_samples;
+    if (settings.trial != 0) settings.bounce_samples = trial_bounce_samples(wanted);
+    const double rays = settings.bounce_samples;
+    for (uint32_t b = 1; b < count; ++b) {
+        const double start = progress.elapsed();
+        bounce(b);
+        if (settings.trial != 0)
+            trial.bounces += (progress.elapsed() - start) * wanted / rays;
+        else
+            settings.bounce_samples = bounce_samples_in_time(settings, start, progress.elapsed(), count - 1 - b);
+    }
+}
+
 } // namespace ajar

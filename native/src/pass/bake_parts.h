@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "pass/trial_gather.h"
 #include "transport/direct.h"
 
 namespace ajar {
@@ -79,5 +80,10 @@ bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size
 /// Rays per bounce for the passes that are left after one that began at start, so that a short time limit leaves
 /// most of the time to the final gather. Seconds.
 uint32_t bounce_samples_in_time(const ajar_settings& settings, double start, double now, uint32_t passes_left);
+
+/// Runs passes 1 to count - 1 by bounce(pass). settings.bounce_samples follows a time limit from pass to pass; in a
+/// trial it is fewer, and trial.bounces becomes what all of them would have taken.
+void run_bounces(uint32_t count, ajar_settings& settings, const Progress& progress, TrialTimes& trial,
+                 const std::function<void(uint32_t)>& bounce);
 
 } // namespace ajar

@@ -194,27 +194,12 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
                                       level > light.standard_error);
 }
 
-void TermBaker::bounces() {
-    const uint32_t wanted = settings_.bounce_samples;
-    if (settings_.trial != 0) settings_.bounce_samples = trial_bounce_samples(wanted);
-    const double rays = settings_.bounce_samples;
-    for (uint32_t b = 1; b < settings_.bounces; ++b) {
-        const double start = progress_.elapsed();
-        bounce(b);
-        if (settings_.trial != 0)
-            result_.trial.bounces += (progress_.elapsed() - start) * wanted / rays;
-        else
-            settings_.bounce_samples =
-                bounce_samples_in_time(settings_, start, progress_.elapsed(), settings_.bounces - 1 - b);
-    }
-}
-
 BakeResult TermBaker::run() {
     if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
     progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
     progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
-    bounces();
+    run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
     radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
                               s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());

@@ -23,7 +23,6 @@ private:
 
     void direct_source();
     void bounce(uint32_t index);
-    void bounces();
     /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
     TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const;
     void take(std::vector<TileRows>& tiles);

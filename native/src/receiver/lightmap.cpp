@@ -55,7 +55,7 @@ struct Spot {
     Vec3 origin{0.0f};
     MovedPosition moved;
     /// Where it is while all switchable things are there.
-    const Vec3& shown() const { return moved.presence.element == kNoElement ? origin : moved.origin; }
+    const Vec3& shown() const { return moved.exists() ? moved.origin : origin; }
 };
 using Spots = std::vector<Spot>; ///< of one texel
 
@@ -306,7 +306,7 @@ void Builder::build(uint32_t r) {
     for (uint32_t k = 0; k < out.positions_per_texel; ++k) spots.push_back(spot_at(r, sub_texel(r, k, base)));
     keep_one_side(r, base, spots);
     for (size_t k = 0; k < spots.size(); ++k) out.positions[size_t{r} * spots.size() + k] = spots[k].origin;
-    const auto is_moved = [](const Spot& s) { return s.moved.presence.element != kNoElement; };
+    const auto is_moved = [](const Spot& s) { return s.moved.exists(); };
     if (std::any_of(spots.begin(), spots.end(), is_moved)) moved[r] = std::move(spots);
 }
 

@@ -43,18 +43,15 @@ struct LightmapReceivers {
 
     uint32_t count() const { return static_cast<uint32_t>(texel.size()); }
     bool has_moved(uint32_t receiver) const { return !moved_row.empty() && moved_row[receiver] != kNoReceiver; }
-    /// What stands for a position while a switchable solid covers it; element kNoElement: nothing does.
+    /// What stands for a position while a switchable solid covers it.
     MovedPosition moved_from(uint32_t receiver, uint32_t position) const {
         if (!has_moved(receiver)) return {};
         return moved[size_t{moved_row[receiver]} * positions_per_texel + position];
     }
     /// Where the first position is while all switchable things are there.
-    const Vec3& shown_origin(uint32_t receiver) const {
-        if (has_moved(receiver))
-            if (const MovedPosition& m = moved[size_t{moved_row[receiver]} * positions_per_texel];
-                m.presence.element != kNoElement)
-                return m.origin;
-        return *origins(receiver);
+    Vec3 shown_origin(uint32_t receiver) const {
+        const MovedPosition m = moved_from(receiver, 0);
+        return m.exists() ? m.origin : *origins(receiver);
     }
     const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
 };

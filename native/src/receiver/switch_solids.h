@@ -10,7 +10,10 @@ namespace ajar {
 /// Where the light of a position comes from while a switchable solid that covers the position is there.
 struct MovedPosition {
     Vec3 origin{0.0f};
-    Presence presence; ///< of the solid; element kNoElement: nothing covers the position
+    Presence presence; ///< of the solid
+
+    /// Whether something covers the position at all.
+    bool exists() const { return presence.element != kNoElement; }
 };
 
 /// Doors and toggles as solids that stand on lightmapped surfaces. The texels at their foot lie partly inside

@@ -65,7 +65,7 @@ bool DirectSampler<Sink>::start_at(uint32_t receiver, uint32_t position, ShadowP
         const MovedPosition m = g.receivers.moved_from(receiver, position);
         if (packet.moved) p = m.origin;
         packet.covered[lane] = {m.presence.element, m.presence.state == packet.moved};
-        return !packet.moved || m.presence.element != kNoElement;
+        return !packet.moved || m.exists();
     }
     return true;
 }

@@ -82,13 +82,10 @@ struct Gatherer {
         const uint32_t count = std::min(kLanes, tile.count - first);
         Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) f.valid[lane] = lane < count ? -1 : 0;
-        tile_rays.aim(first, stratum, f.packet, f.local);
-        if (!g.receivers.moved_row.empty())
-            for (uint32_t lane = 0; lane < count; ++lane) f.position[lane] = tile_rays.position(first + lane, stratum);
+        tile_rays.aim(first, stratum, f.packet, f.local, f.position);
         if (o.aims != nullptr)
             for (uint32_t lane = 0; lane < count; ++lane) {
-                const uint32_t position = tile_rays.position(first + lane, stratum);
-                const float aimed = o.aims->density(first + lane, position, f.packet.direction(lane));
+                const float aimed = o.aims->density(first + lane, f.position[lane], f.packet.direction(lane));
                 f.local.weight[lane] = mis_gather / (mis_gather / f.local.weight[lane] + aimed);
             }
         trace(first, sample);
@@ -182,9 +179,8 @@ struct Gatherer {
     bool shade_moved(uint32_t lane, const Flight& f, Through& through) {
         if constexpr (Sink::kSwitches) {
             const uint32_t local = f.first + lane;
-            if (!g.receivers.has_moved(tile.first + local)) return true;
             const MovedPosition moved = g.receivers.moved_from(tile.first + local, f.position[lane]);
-            if (moved.presence.element == kNoElement) return true;
+            if (!moved.exists()) return true;
             Through there = through;
             if (there.condition.require(moved.presence.element, moved.presence.state)) {
                 const Ray ray{moved.origin, f.packet.direction(lane)};

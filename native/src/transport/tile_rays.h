@@ -30,13 +30,9 @@ public:
             turn_[i] = shuffle_index(block, hash32(receivers_.texel[receiver(i)] ^ seed_)) & 0xffffu;
     }
 
-    /// Which of its positions a receiver's ray of a stratum starts at.
-    uint32_t position(uint32_t local, uint32_t stratum) const {
-        return (stratum + turn_[local]) % receivers_.positions_per_texel;
-    }
-
-    /// Rays of one stratum from receivers first to first + kLanes; those past the tile repeat its last.
-    void aim(uint32_t first, uint32_t stratum, RayPacket& packet, PacketDirections& local) const {
+    /// Rays of one stratum from receivers first to first + kLanes; those past the tile repeat its last. position:
+    /// [kLanes] which of its receiver's each starts at.
+    void aim(uint32_t first, uint32_t stratum, RayPacket& packet, PacketDirections& local, uint32_t* position) const {
         const float *x = batch_.x(first, stratum), *y = batch_.y(first, stratum);
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
             const Vec3 w = sample_hemisphere({x[lane], y[lane]}, share_);
@@ -45,7 +41,8 @@ public:
         batch_.fetch(first + kLanes, stratum);
         turn_to_world(first, local, packet);
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
-            const Vec3& p = receivers_.origins(receiver(first + lane))[position(first + lane, stratum)];
+            position[lane] = (stratum + turn_[first + lane]) % receivers_.positions_per_texel;
+            const Vec3& p = receivers_.origins(receiver(first + lane))[position[lane]];
             packet.ox[lane] = p.x, packet.oy[lane] = p.y, packet.oz[lane] = p.z;
             packet.tfar[lane] = std::numeric_limits<float>::infinity();
         }
