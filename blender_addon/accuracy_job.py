@@ -11,9 +11,8 @@ import bpy
 from . import settings
 from .accuracy import knobs
 from .accuracy.worker import REQUEST, snapshot_folder
-from .apply import uvs
 from .bridge.client import WorkerClient
-from .job import JobFailed, layout_steps, put_back, snapshot_steps
+from .job import JobFailed, layout_steps, scene_left_alone, snapshot_steps
 
 EXPORTED = 0.05  # share of the bar for the export
 
@@ -25,12 +24,8 @@ def accuracy_steps(job, out, preset, quick, limits):
     density = settings.layout_settings(scene)["texels_per_meter"]
     folder = os.path.join(job.folder, "accuracy")
     os.makedirs(folder)
-    kept, shown = uvs.KeptLayout(scene), scene.ajar.preview
-    try:
+    with scene_left_alone(job):
         yield from _export(job, folder, density, preset, quick)
-    finally:
-        if not job.link.detached:
-            put_back(job, kept, shown)
     wishes = {"name": _name(), "preset": preset, "density": density, "quick": quick, **limits}
     with open(os.path.join(folder, REQUEST), "w", encoding="utf-8") as file:
         json.dump(wishes, file)

@@ -4,6 +4,7 @@
 A task is a generator that yields while a worker process runs. The manager is a module variable:
 it outlives operators (loading a file cancels them) and is stepped by a persistent timer.
 """
+import contextlib
 import os
 import shutil
 import tempfile
@@ -232,13 +233,19 @@ def snapshot_steps(job, folder, layout, overrides=None):
     job.status.warn_all(written.warnings)
 
 
-def put_back(job, kept, shown):
-    """Lightmap UVs (a KeptLayout) and preview as before."""
+@contextlib.contextmanager
+def scene_left_alone(job):
+    """Layouts that a job makes inside are undone at the end: lightmap UVs and preview are as before."""
     scene = job.link.scene()
-    kept.restore(scene)
-    if shown:
-        with job.link.context():
-            job.status.warn_all(preview.show(bpy.context))
+    kept, shown = uvs.KeptLayout(scene), scene.ajar.preview
+    try:
+        yield
+    finally:
+        if not job.link.detached:
+            kept.restore(job.link.scene())
+            if shown:
+                with job.link.context():
+                    job.status.warn_all(preview.show(bpy.context))
 
 
 def finish(job, package, report, show, overrides=None):

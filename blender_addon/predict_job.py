@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from . import job as jobs
 from . import settings
 from .accuracy.advice import duration
-from .apply import uvs
 from .bridge.client import WorkerClient
 from .bridge.worker import WISHES
 
@@ -26,7 +25,7 @@ class Prediction:
     seconds: dict
 
     def lines(self):
-        """For people: 'Preview: about 2 min 5 s'."""
+        """For people: 'Preview: about 2.1 min'."""
         return [f"{name.capitalize()}: about {duration(s)}" for name, s in self.seconds.items()]
 
 
@@ -36,7 +35,9 @@ def predict_steps(job, overrides=None):
     density = settings.layout_settings(scene, overrides)["texels_per_meter"]
     folder = os.path.join(job.folder, "snapshot")
     begin = time.monotonic()
-    yield from _export(job, folder, overrides)
+    with jobs.scene_left_alone(job):
+        layout = yield from jobs.layout_steps(job, overrides=overrides, end=0.5 * EXPORTED, stays=False)
+        yield from jobs.snapshot_steps(job, folder, layout, overrides)
     export = time.monotonic() - begin
     scene = job.link.scene()
     given = overrides or {}
@@ -50,15 +51,3 @@ def predict_steps(job, overrides=None):
     found = Prediction(job.link.scene().name, density, worker.outcome["texels"], seconds)
     jobs.manager.predicted = found
     job.status.message = f"{found.texels} texels. " + ", ".join(found.lines())
-
-
-def _export(job, folder, overrides):
-    """Writes the snapshot; lightmap UVs and preview are put back."""
-    scene = job.link.scene()
-    kept, shown = uvs.KeptLayout(scene), scene.ajar.preview
-    try:
-        layout = yield from jobs.layout_steps(job, overrides=overrides, end=0.5 * EXPORTED, stays=False)
-        yield from jobs.snapshot_steps(job, folder, layout, overrides)
-    finally:
-        if not job.link.detached:
-            jobs.put_back(job, kept, shown)

@@ -3,7 +3,6 @@
 import contextlib
 import ctypes
 import functools
-import json
 import time
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from ..bridge import abi, scene_builder
 from ..bridge.library import check, load_library
 from ..bridge.snapshot_io import Reader
-from ..bridge.worker import job_error
+from ..bridge.worker import job_error, read_report
 
 LAYER_IRRADIANCE, LAYER_VALIDITY = 0, 3
 POLL_SECONDS = 0.1
@@ -100,11 +99,7 @@ class Bake:
 
     def report(self):
         """The report, parsed."""
-        size = ctypes.c_uint64()
-        check(self._library, self._library.ajar_job_report(self._job, None, ctypes.byref(size)))
-        text = ctypes.create_string_buffer(size.value)
-        check(self._library, self._library.ajar_job_report(self._job, text, ctypes.byref(size)))
-        return json.loads(text.value)
+        return read_report(self._library, self._job)
 
     def progress(self):
         """Rays traced and the like."""

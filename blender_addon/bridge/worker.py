@@ -5,7 +5,7 @@
     python3 worker.py bake DIR --package OUT_DIR --report REPORT.json
     python3 worker.py predict DIR
 
-Writes one JSON event per line to stdout (progress, warning, predicted, error, cancelled, done). A line
+Writes one JSON event per line to stdout (progress, warning, error, cancelled, done). A line
 "cancel" on stdin, a closed stdin or SIGTERM cancels. Exit codes: 0 done, 1 error, 2 cancelled.
 """
 
@@ -160,7 +160,6 @@ def predict(library, host, arguments):
             if trial is None:
                 return CANCELLED
             seconds[name], texels = trial["predicted_seconds"], trial["texels"]
-            host.send("predicted", name=name, seconds=seconds[name])
     finally:
         builder.release()
     host.send("done", predicted=seconds, texels=texels)
@@ -172,12 +171,7 @@ def run_trial(library, host, scene, settings):
     job = abi.Handle()
     check(library, library.ajar_job_start(scene, ctypes.byref(settings), ctypes.byref(job)))
     try:
-        result = wait(library, host, job)
-        if result == abi.CANCELLED or host.cancel.is_set():
-            return None
-        if result < 0:
-            raise job_error(library, job, result)
-        return json.loads(read_report(library, job, ()))
+        return read_report(library, job) if succeeds(library, host, job) else None
     finally:
         library.ajar_job_release(ctypes.byref(job))
 
@@ -190,18 +184,25 @@ def send_scene_warnings(library, host, builder):
 
 def finish(library, host, job, arguments, known, extras):
     """Waits for the job, then writes the package and the report; returns the exit code."""
-    result = wait(library, host, job)
-    if result == abi.CANCELLED or host.cancel.is_set():
+    if not succeeds(library, host, job):
         return CANCELLED
-    if result < 0:
-        raise job_error(library, job, result)
-    report = read_report(library, job, known)
+    report = report_text(library, job, known)
     extras_text = None if extras is None else json.dumps(extras).encode("utf-8")
     check(library, library.ajar_job_write_package(job, os.fsencode(arguments.package), extras_text))
     if arguments.report:
         write_text_whole(arguments.report, report)
     host.send("done", package=str(arguments.package), report=str(arguments.report or ""))
     return DONE
+
+
+def succeeds(library, host, job):
+    """Waits for the job; False if it was cancelled. Raises its failure."""
+    result = wait(library, host, job)
+    if result == abi.CANCELLED or host.cancel.is_set():
+        return False
+    if result < 0:
+        raise job_error(library, job, result)
+    return True
 
 
 def wait(library, host, job):
@@ -235,13 +236,18 @@ def job_error(library, job, result):
     return BakeError(result, message, decode(culprit.value))
 
 
-def read_report(library, job, known):
-    """The engine's report as JSON text, with the warnings of extraction put before its own."""
+def read_report(library, job):
+    """The engine's report, parsed."""
     size = ctypes.c_uint64()
-    library.ajar_job_report(job, None, ctypes.byref(size))
+    check(library, library.ajar_job_report(job, None, ctypes.byref(size)))
     buffer = ctypes.create_string_buffer(size.value)
     check(library, library.ajar_job_report(job, buffer, ctypes.byref(size)))
-    report = json.loads(decode(buffer.value))
+    return json.loads(decode(buffer.value))
+
+
+def report_text(library, job, known):
+    """The engine's report as JSON text, with the warnings of extraction put before its own."""
+    report = read_report(library, job)
     if known:
         report["warnings"] = list(known) + list(report.get("warnings", []))
     return json.dumps(report, indent=2, ensure_ascii=False) + "\n"

@@ -9,7 +9,7 @@ import tempfile
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.addon import build_room, load_addon  # noqa: E402
+from support.addon import build_room, cancelling, load_addon  # noqa: E402
 
 load_addon()
 from ajar import job  # noqa: E402
@@ -30,20 +30,9 @@ def check_show_has_to_wait():
 
 def check_cancel():
     """Cancel while the worker runs leaves no page and no job."""
-    stepped, step = job.manager, job.manager.step
-
-    def cancel_in_worker():
-        if stepped.job.worker is not None and stepped.status.fraction > 0.05:
-            stepped.cancel()
-        return step()
-
-    stepped.step = cancel_in_worker
-    try:
+    with cancelling(job.manager, 0.05):
         assert measure(budget=300.0) == {"CANCELLED"}
-    finally:
-        del stepped.step
-    assert stepped.last.result == "cancelled", stepped.last.message
-    assert not stepped.running and not os.path.exists(OUT)
+    assert not os.path.exists(OUT)
 
 
 def check_page(scene):

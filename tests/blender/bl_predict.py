@@ -8,7 +8,7 @@ import tempfile
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from support.addon import build_room, load_addon  # noqa: E402
+from support.addon import build_room, cancelling, load_addon  # noqa: E402
 
 load_addon()
 from ajar import job  # noqa: E402
@@ -18,20 +18,9 @@ FOLDER = os.environ.get("AJAR_TEST_DIR") or tempfile.mkdtemp(prefix="ajar-test-"
 
 def check_cancel():
     """Cancel while the worker runs leaves no job and no prediction."""
-    stepped, step = job.manager, job.manager.step
-
-    def cancel_in_worker():
-        if stepped.job.worker is not None and stepped.status.fraction > 0.2:
-            stepped.cancel()
-        return step()
-
-    stepped.step = cancel_in_worker
-    try:
+    with cancelling(job.manager, 0.2):
         assert bpy.ops.ajar.predict() == {"CANCELLED"}
-    finally:
-        del stepped.step
-    assert stepped.last.result == "cancelled", stepped.last.message
-    assert not stepped.running and stepped.predicted is None
+    assert job.manager.predicted is None
 
 
 def check_times(scene):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Loads the add-on from the source tree the way batch bakes do, and makes packages by hand."""
+import contextlib
 import importlib.util
 import json
 import os
@@ -24,6 +25,25 @@ def load_addon(name=os.environ.get("AJAR_ADDON_MODULE", "ajar")):
     spec.loader.exec_module(module)
     module.register()
     return module
+
+
+@contextlib.contextmanager
+def cancelling(manager, fraction):
+    """Jobs that run inside are cancelled once their worker has come further than a fraction."""
+    step = manager.step
+
+    def cancel_in_worker():
+        if manager.job.worker is not None and manager.status.fraction > fraction:
+            manager.cancel()
+        return step()
+
+    manager.step = cancel_in_worker
+    try:
+        yield
+    finally:
+        del manager.step
+    assert manager.last.result == "cancelled", manager.last.message
+    assert not manager.running
 
 
 def build_room():
