@@ -8,9 +8,10 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kMostFine = 256;
-constexpr float kFineShare = 0.995f;     ///< of the tile's weight that is chosen from with care
-constexpr uint32_t kProbes = 8;          ///< receivers of the tile that estimate importance
-constexpr uint32_t kVisibilityRays = 16; ///< per candidate and tile
+constexpr float kFineShare = 0.995f;                   ///< of the tile's weight that is chosen from with care
+constexpr uint32_t kMostProbes = 32, kLeastProbes = 8; ///< receivers of the tile that estimate importance
+constexpr uint32_t kProbedPairs = 8192;                ///< of receivers and emitters, if so few probes do
+constexpr uint32_t kVisibilityRays = 16;               ///< per candidate and tile
 constexpr float kVisibilityFloor = 0.05f;
 constexpr float kUnseenShare = 0.25f; ///< of what the seen weigh that lamps seen by no ray may weigh together
 constexpr float kTileShare = 0.01f;   ///< of the tile's weight that each receiver keeps
@@ -20,37 +21,62 @@ constexpr float kTileShare = 0.01f;   ///< of the tile's weight that each receiv
 void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile& tile) {
     candidates_.clear();
     slot_of_.assign(emitters_.count(), EmitterSet::kNone);
-    const uint32_t probes = std::min(kProbes, tile.count);
-    for (const uint32_t e : choices_) {
-        if (roles_ == LightRoles::stored && emitters_.is_primary(e)) continue;
-        float weight = 0.0f;
-        for (uint32_t i = 0; i < probes; ++i) {
-            const uint32_t r = tile.first + static_cast<uint32_t>(uint64_t{i} * tile.count / probes);
-            weight += emitters_.importance(e, receivers.origins(r)[0], receivers.frame[r].z);
-        }
-        candidates_.push_back({e, weight / static_cast<float>(probes)});
-    }
-    float total = 0.0f;
-    for (const Candidate& c : candidates_) total += c.weight;
-    // Probes can miss a lamp that only some receivers see; it keeps a small chance.
-    for (Candidate& c : candidates_) c.weight += 1e-3f * total / static_cast<float>(candidates_.size()) + 1e-20f;
+    for (const uint32_t e : choices_)
+        if (roles_ != LightRoles::stored || !emitters_.is_primary(e)) candidates_.push_back({e, 0.0f, 0.0f, {}});
+    weigh_candidates(receivers, tile);
+    // A tile may hold surfaces of several rooms: what counts is a lamp's share where it is strong.
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-        return a.weight != b.weight ? a.weight > b.weight : a.emitter < b.emitter;
+        return a.share != b.share ? a.share > b.share : a.emitter < b.emitter;
     });
     float sum = 0.0f, all = 0.0f;
-    for (const Candidate& c : candidates_) all += c.weight;
+    for (const Candidate& c : candidates_) all += c.share;
     for (fine_ = 0; fine_ < std::min<size_t>(candidates_.size(), kMostFine) && sum <= kFineShare * all; ++fine_)
-        sum += candidates_[fine_].weight;
+        sum += candidates_[fine_].share;
     for (uint32_t i = 0; i < candidates_.size(); ++i) slot_of_[candidates_[i].emitter] = i;
+}
+
+void LightChoice::weigh_candidates(const LightmapReceivers& receivers, const Tile& tile) {
+    if (candidates_.empty()) return;
+    const auto pairs = kProbedPairs / static_cast<uint32_t>(candidates_.size());
+    const uint32_t probes = std::min(std::clamp(pairs, kLeastProbes, kMostProbes), tile.count);
+    for (uint32_t i = 0; i < probes; ++i) {
+        const uint32_t r = tile.first + static_cast<uint32_t>(uint64_t{i} * tile.count / probes);
+        float here = 0.0f;
+        for (Candidate& c : candidates_) {
+            c.running.push_back(emitters_.importance(c.emitter, receivers.origins(r)[0], receivers.frame[r].z));
+            here += c.running.back();
+        }
+        for (Candidate& c : candidates_) c.share += here > 0.0f ? c.running.back() / here : 0.0f;
+    }
+    float total = 0.0f;
+    for (Candidate& c : candidates_) {
+        for (uint32_t i = 1; i < probes; ++i) c.running[i] += c.running[i - 1];
+        total += c.weight = c.running.back() / static_cast<float>(probes);
+    }
+    // Probes can miss a lamp that only some receivers see; it keeps a small chance.
+    for (Candidate& c : candidates_) c.weight += 1e-3f * total / static_cast<float>(candidates_.size()) + 1e-20f;
+}
+
+/// A receiver of the tile, where a candidate matters most likely one near a probe that it matters to.
+uint32_t LightChoice::place_of(const Candidate& c, const Tile& tile, const Vec2& u) {
+    const auto probes = static_cast<uint32_t>(c.running.size());
+    const float target = c.running.back() > 0.0f ? u.x * c.running.back() : -1.0f;
+    auto probe =
+        static_cast<uint32_t>(std::upper_bound(c.running.begin(), c.running.end(), target) - c.running.begin());
+    if (target < 0.0f) probe = static_cast<uint32_t>(u.x * static_cast<float>(probes));
+    probe = std::min(probe, probes - 1);
+    const auto first = static_cast<uint32_t>(uint64_t{probe} * tile.count / probes),
+               last = static_cast<uint32_t>(uint64_t{probe + 1} * tile.count / probes);
+    return tile.first + std::min(first + static_cast<uint32_t>(u.y * static_cast<float>(last - first)), last - 1);
 }
 
 LightChoice::Seen LightChoice::look(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                                     uint32_t candidate, uint32_t seed) const {
-    const uint32_t emitter = candidates_[candidate].emitter;
+    const uint32_t emitter = candidates_[candidate].emitter, h0 = hash_combine(seed, ~candidate);
     Seen seen;
     for (uint32_t i = 0; i < kVisibilityRays; ++i) {
         const uint32_t h = hash_combine(seed, (candidate << 8) | i);
-        const uint32_t r = tile.first + (h % tile.count);
+        const uint32_t r = place_of(candidates_[candidate], tile, owen_sobol(i, h0));
         const Vec3 p = receivers.origins(r)[i % receivers.positions_per_texel], n = receivers.frame[r].z;
         const EmitterSample s = emitters_.sample(emitter, p, owen_sobol(i, h));
         const float cosine = glm::dot(s.direction, n);

@@ -38,9 +38,13 @@ public:
 private:
     struct Candidate {
         uint32_t emitter;
-        float weight; ///< of the whole tile
+        float weight;               ///< mean importance over the tile
+        float share;                ///< of all importance at a receiver, mean over the tile
+        std::vector<float> running; ///< [probes] running importance: where in the tile it matters
     };
     void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
+    void weigh_candidates(const LightmapReceivers& receivers, const Tile& tile);
+    static uint32_t place_of(const Candidate& candidate, const Tile& tile, const Vec2& u);
     /// What a candidate's visibility rays brought, each over the importance where it started.
     struct Seen {
         uint32_t rays = 0, arrived = 0;
