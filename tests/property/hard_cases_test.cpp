@@ -432,6 +432,21 @@ TEST(HardRoom, TexelHalfUnderABoxKeepsTheLightOfItsVisibleHalf) {
     for (float v : e.data) EXPECT_GT(v, 0.2f) << "nothing stays black under the crate";
 }
 
+TEST(HardRoom, TexelHalfUnderAPlateKeepsTheLightOfItsVisibleHalf) {
+    SkyScene s;
+    constexpr uint32_t kSize = 32; // texels of 0.125 m; the plate covers half of column 11 and hangs 1 cm above it
+    s.add(kit::plane(4.0f, 0.0f), s.scene.page(kSize, kSize), "floor");
+    s.scene.instance(s.scene.mesh(kit::box({-0.5625f, -0.5625f, 0.010f}, {0.5625f, 0.5625f, 0.012f}, false)),
+                     s.scene.diffuse({0, 0, 0}), AJAR_NONE, "plate");
+    s.scene.commit();
+    const kit::Layer e = kit::Bake(s.scene, kit::settings(0, 1024)).layer(AJAR_LAYER_IRRADIANCE);
+    for (uint32_t y = 14; y < 18; ++y) {
+        // The plate's edge takes 8 % of the light from the visible half (a strip's form factor, averaged).
+        EXPECT_NEAR(e.at(11, y) / e.at(8, y), 0.92, 0.04) << y;
+        EXPECT_LT(e.at(13, y), 0.1f) << "wholly under it";
+    }
+}
+
 TEST(HardRoom, AMillionToOneBetweenNeighbouringRooms) {
     kit::Scene scene;
     const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f});

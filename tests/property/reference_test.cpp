@@ -171,7 +171,8 @@ TEST(Reference, AgreesInStatesOfLampDoorAndToggle) {
 }
 
 TEST(Reference, ChoosesNoPlaceThatNobodySees) {
-    // A pillar between floor and ceiling, and a crate without a bottom: only under them it is black.
+    // A pillar between floor and ceiling, a crate without a bottom, and a plate just above the floor: only under
+    // them it is black.
     kit::Scene scene;
     kit::fill_room(scene, {kSize, false});
     const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f});
@@ -180,6 +181,7 @@ TEST(Reference, ChoosesNoPlaceThatNobodySees) {
     crate.corners.erase(crate.corners.begin(), crate.corners.begin() + 6);
     crate.uv.erase(crate.uv.begin(), crate.uv.begin() + 6);
     scene.instance(scene.mesh(crate), grey, AJAR_NONE, "crate");
+    scene.instance(scene.mesh(kit::box({0.2f, 0.4f, 1e-4f}, {1.4f, 1.6f, 2e-4f}, false)), grey, AJAR_NONE, "plate");
     scene.commit();
     ajar_reference_settings s = kit::reference_settings(2, 500, 4);
     for (const uint32_t texel_mean : {0u, 1u}) {

@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kAlbedoSamples = 16;
 constexpr uint32_t kSidePoints = 16; ///< points of a texel that tell into which parts a wall cuts it
+constexpr float kLowCover = 0.125f;  ///< texel edges: what hangs that low over a surface hides it
+constexpr float kUpright = 0.2f;     ///< cosine between normals
 constexpr uint32_t kPositionSalt = 0xa11ce5u;
 constexpr float kOverlapArea = 1.1f; ///< more triangle area than a texel has means overlapping UVs
 
@@ -79,6 +81,9 @@ struct Builder {
     Vec3 smooth_position(const TexelPoint& p) const;
     Vec3 shading_normal(const TexelPoint& p) const;
     Spot spot_at(uint32_t receiver, const TexelPoint& point);
+    bool is_covered(uint32_t receiver, const Spot& spot) const;
+    Spots scattered_spots(uint32_t receiver, uint32_t base);
+    void leave_covered(uint32_t receiver, uint32_t base, Spots& spots);
     void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
     void join_moved();
     void find_sharing(const Tile& tile);
@@ -223,6 +228,32 @@ Spot Builder::spot_at(uint32_t r, const TexelPoint& p) {
     return s;
 }
 
+/// Whether something hangs low over a position. What stands upright, as a wall does at the edge of a floor, does not.
+bool Builder::is_covered(uint32_t r, const Spot& s) const {
+    const Vec3 up = out.frame[r].z * (kLowCover * out.texel_size[r]);
+    const Hit hit = tracer.intersect({s.origin, up, 0.0f, 1.0f}, kMaskGather);
+    return hit.triangle != kMiss && std::abs(glm::dot(scene.geometric_normal(hit.triangle), out.frame[r].z)) > kUpright;
+}
+
+/// More points of a texel.
+Spots Builder::scattered_spots(uint32_t r, uint32_t base) {
+    Spots all;
+    for (uint32_t k = 0; k < kSidePoints; ++k) all.push_back(spot_at(r, point(r, owen_sobol(k, hash32(base)))));
+    return all;
+}
+
+/// What lies under a decal, a foot or a lamp close to the surface is not seen, but its darkness or glare would
+/// show in the whole texel: its positions are in the open, where it has such.
+void Builder::leave_covered(uint32_t r, uint32_t base, Spots& spots) {
+    if (std::none_of(spots.begin(), spots.end(), [&](const Spot& s) { return is_covered(r, s); })) return;
+    Spots open;
+    for (const Spots& some : {spots, scattered_spots(r, base)})
+        for (const Spot& s : some)
+            if (!is_covered(r, s)) open.push_back(s);
+    if (open.empty()) return;
+    for (size_t k = 0; k < spots.size(); ++k) spots[k] = open[k * open.size() / spots.size()];
+}
+
 /// Light on the two sides of a wall must not mix in one texel: where its positions do not see each other,
 /// all are taken from the largest of the parts that a wall cuts it into.
 void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
@@ -236,7 +267,7 @@ void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
     if (seen == n) return;
     out.cut[r] = 1;
     Spots points = spots, best, side;
-    for (uint32_t k = 0; k < kSidePoints; ++k) points.push_back(spot_at(r, point(r, owen_sobol(k, hash32(base)))));
+    for (const Spot& s : scattered_spots(r, base)) points.push_back(s);
     for (const Spot& a : points) {
         side.clear();
         for (const Spot& b : points)
@@ -304,6 +335,7 @@ void Builder::build(uint32_t r) {
     const uint32_t base = hash_combine(kPositionSalt, out.texel[r]);
     Spots spots;
     for (uint32_t k = 0; k < out.positions_per_texel; ++k) spots.push_back(spot_at(r, sub_texel(r, k, base)));
+    leave_covered(r, base, spots);
     keep_one_side(r, base, spots);
     for (size_t k = 0; k < spots.size(); ++k) out.positions[size_t{r} * spots.size() + k] = spots[k].origin;
     const auto is_moved = [](const Spot& s) { return s.moved.exists(); };

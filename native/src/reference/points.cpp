@@ -12,6 +12,7 @@ namespace {
 constexpr int kTries = 256;
 constexpr int kSideProbes = 8;
 constexpr uint32_t kMaxRow = 1u << 14; ///< no page is larger
+constexpr float kCoverHeight = 0.125f; ///< texels above the surface
 constexpr float kProbeHeight = 0.25f;  ///< texels above the surface
 
 std::array<Vec2, 3> corners(const Snapshot& s, uint32_t t) {
@@ -19,6 +20,12 @@ std::array<Vec2, 3> corners(const Snapshot& s, uint32_t t) {
 }
 
 float cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// Mean edge of the texels on a triangle, m.
+float texel_edge(const Snapshot& s, uint32_t t) {
+    const auto c = corners(s, t);
+    return std::sqrt(2.0f * s.area(t) / std::abs(cross(c[1] - c[0], c[2] - c[0])));
+}
 
 /// Barycentric weights of p in texels; false outside.
 bool locate(const std::array<Vec2, 3>& c, const Vec2& p, Place& out) {
@@ -100,7 +107,7 @@ bool PointChooser::draw(ReferencePoint& point, Pcg& random) const {
     if (p.x < 0.0f || p.y < 0.0f || p.x >= static_cast<float>(page.width) || p.y >= static_cast<float>(page.height))
         return false;
     point.x = static_cast<uint32_t>(p.x), point.y = static_cast<uint32_t>(p.y);
-    return !is_buried(point.place);
+    return !is_buried(point.place) && !is_covered(point.place);
 }
 
 Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) const {
@@ -108,7 +115,7 @@ Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) con
         const Vec2 p(static_cast<float>(point.x) + random.uniform(), static_cast<float>(point.y) + random.uniform());
         for (const uint32_t t : point.neighbours) {
             Place place{t, 0.0f, 0.0f};
-            if (locate(corners(world_.scene, t), p, place) && !is_buried(place)) return place;
+            if (locate(corners(world_.scene, t), p, place) && !is_buried(place) && !is_covered(place)) return place;
         }
     }
     return point.place;
@@ -131,11 +138,17 @@ bool PointChooser::is_buried(const Place& p) const {
     return inside >= 2 || backs == 3;
 }
 
+bool PointChooser::is_covered(const Place& p) const {
+    const Vec3 n = world_.scene.geometric_normal(p.triangle);
+    const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), n);
+    const Vec3 up = n * (kCoverHeight * texel_edge(world_.scene, p.triangle));
+    return world_.tracer.intersect({origin, up, 0.0f, 1.0f}, kMaskGather).triangle != kMiss;
+}
+
 bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {
     Pcg random(draw, point.place.triangle);
     const Snapshot& s = world_.scene;
-    const auto c = corners(s, point.place.triangle);
-    const float size = std::sqrt(2.0f * s.area(point.place.triangle) / std::abs(cross(c[1] - c[0], c[2] - c[0])));
+    const float size = texel_edge(s, point.place.triangle);
     const auto above = [&](const Place& p) {
         return s.position(p.triangle, p.u, p.v) + shading_normal(s, p.triangle, p.u, p.v) * (kProbeHeight * size);
     };

@@ -18,8 +18,8 @@ struct ReferencePoint {
     std::vector<uint32_t> neighbours; ///< triangles that share the texel, if its mean is wanted
 };
 
-/// Draws places of lightmaps at random. Those inside solids, which nobody sees, are drawn again; with
-/// whole texels also those whose texel a wall parts, for it has no one answer.
+/// Draws places of lightmaps at random. Those that nobody sees, inside solids or close under something, are
+/// drawn again; with whole texels also those whose texel a wall parts, for it has no one answer.
 class PointChooser {
 public:
     /// by_texel: all texels alike, else all surface alike. state: what is there when in doubt.
@@ -29,6 +29,8 @@ public:
     /// Another place of the same texel, uniform over what its triangles cover.
     Place place_in_texel(const ReferencePoint& point, Pcg& random) const;
     bool is_buried(const Place& place) const;
+    /// Whether something hangs over a place, lower than an eighth of its texels' edge.
+    bool is_covered(const Place& place) const;
 
 private:
     bool draw(ReferencePoint& point, Pcg& random) const;
