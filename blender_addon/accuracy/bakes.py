@@ -93,34 +93,50 @@ class SceneFile:
         return out
 
 
-class Lightmaps:
-    """One finished bake: light of a state on every page, with how long it took."""
+def product_of(weights):
+    """Share of a term in a state: the product of its elements' weights."""
+    return lambda elements: float(np.prod([weights[e] for e in elements]))
 
-    def __init__(self, library, scene, weights, cancelled=engine.never, **settings):
+
+class Lightmaps:
+    """One finished bake: light of a state on every page, with how long it took. mixes: shares of its terms, by element
+    ids, in further states."""
+
+    def __init__(self, library, scene, weights, cancelled=engine.never, mixes=(), **settings):
         watch = Stopwatch()
         with engine.Bake(library, scene.folder, cancelled, **settings) as bake:
             self.seconds, self.wall = watch.seconds(), watch.wall()
             pages = range(len(bake.pages))
             base = [bake.layer(p, engine.LAYER_IRRADIANCE) for p in pages]
             self.base = [page @ LUMINANCE for page in base]
-            self.light = [page + _terms(bake, p, page.shape, weights) for p, page in enumerate(base)]
+            shares = [product_of(weights), *mixes]
+            self.light, *self.mixed = zip(*(_mix(bake, p, page, shares) for p, page in enumerate(base)))
             self.validity = [bake.layer(p, engine.LAYER_VALIDITY)[..., 0] for p in pages]
             self.stderr = [bake.layer(p, LAYER_STDERR)[..., 0] for p in pages]
             self.packed = [bake.layer(p, LAYER_AHD) for p in pages]
             self.sh = [bake.layer(p, LAYER_SH) for p in pages] if settings.get("keep_sh") else None
             self.report = bake.report()
 
-    def luminance(self, pages, uv):
-        """Luminance at points as a game shows it, W/m^2."""
-        return lookup([page @ LUMINANCE for page in self.light], pages, uv)
+    def luminance(self, pages, uv, mix=None):
+        """Luminance at points as a game shows it, W/m^2; of the state, or of a mix by number."""
+        return lookup(
+            [page @ LUMINANCE for page in (self.light if mix is None else self.mixed[mix])], pages, uv
+        )
+
+    def luminance_page(self, page):
+        """Luminance of the state on a page, bottom row first."""
+        return self.light[page] @ LUMINANCE
 
 
-def _terms(bake, page, shape, weights):
-    out = np.zeros(shape, np.float32)
+def _mix(bake, page, base, shares):
+    """Light of a page, one for each choice of shares."""
+    out = [base.copy() for _ in shares]
     for elements, read in bake.terms():
-        weight = float(np.prod([weights[e] for e in elements]))
-        if weight != 0.0:
-            out += weight * read(page, shape)
+        parts = [share(elements) for share in shares]
+        if any(parts):
+            light = read(page, base.shape)
+            for total, part in zip(out, parts):
+                total += np.float32(part) * light
     return out
 
 
@@ -155,6 +171,7 @@ class Reference:
         seconds,
         seed=0,
         normal=(0, 0, 1),
+        door_bounces=abi.NONE,
         cancelled=engine.never,
     ):
         watch = Stopwatch()
@@ -163,6 +180,7 @@ class Reference:
         settings.points, settings.bounces, settings.batches = points, bounces, 1 << 30
         settings.time_limit, settings.seed = seconds, seed
         settings.normal[:] = normal
+        settings.door_bounces = door_bounces
         settings.weight_count = len(weights)
         settings.weights = np.ascontiguousarray(weights, np.float32).ctypes.data_as(abi.floats)
         self.points, self.batches = _trace(library, scene.folder, settings, cancelled)

@@ -100,10 +100,17 @@ def _rays(quick):
     ]
 
 
+def _thresholds(base, quick):
+    values = (0.0, 0.05) if quick else (0.0, 0.003, 0.03, 0.1)
+    return [Trial("keep threshold", v, {"term_threshold": v}) for v in values if v != base["term_threshold"]]
+
+
 def _terms(base, quick):
-    thresholds = [
-        v for v in ((0.0, 0.05) if quick else (0.0, 0.003, 0.03, 0.1)) if v != base["term_threshold"]
-    ]
-    trials = [Trial("keep threshold", v, {"term_threshold": v}) for v in thresholds]
+    rays = (0.0,) if quick else (0.0, 0.1, 1.0)
+    trials = [Trial("door rays", v, {"door_rays": v}) for v in rays if v != base["door_rays"]]
     words = [w for w in bakes.combinations() if w != base["combinations"]]
-    return trials + [Trial("combinations", w.lower(), {"combinations": w}) for w in words]
+    return (
+        trials
+        + _thresholds(base, quick)
+        + [Trial("combinations", w.lower(), {"combinations": w}) for w in words]
+    )

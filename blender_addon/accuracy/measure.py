@@ -105,6 +105,13 @@ def error(truth, first, second):
     )
 
 
+def apart(scale, pair, other):
+    """How far the light of two settings is apart: pairs of bakes with the same two seeds, relative by Truth.scale. What
+    differs by chance between the seeds is left out."""
+    first, second = (np.clip((a - b) * scale, -1.0, 1.0) for a, b in zip(pair, other))
+    return band_of(first * second)
+
+
 def differs(one, other):
     """Whether two settings differ by more than chance: the band of their paired difference leaves out 0."""
     difference = one.squares - other.squares

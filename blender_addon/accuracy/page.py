@@ -2,6 +2,7 @@
 """The page, the table and the JSON of an accuracy run."""
 import csv
 import html
+from dataclasses import dataclass, field
 
 from .advice import duration, frontier, percent
 from .measure import BAND, FLOOR
@@ -14,6 +15,7 @@ td:first-child, th:first-child { text-align: left } tr:nth-child(even) { backgro
 tr.front td:first-child { font-weight: 600 } svg { max-width: 100%; margin: 12px 0 }
 text { font: 12px system-ui, sans-serif; fill: #333 } text.title { font-weight: 600; font-size: 14px }
 text.end { text-anchor: end } text.middle { text-anchor: middle } line.grid { stroke: #e2e2e2 }
+figure { display: inline-block; margin: 4px 8px 12px 0 } figcaption { font-size: 12px } img { max-width: 300px }
 .advice { background: #eef5fb; padding: .6em 1.2em; border-left: 4px solid #1b6ca8 }
 """
 
@@ -170,8 +172,61 @@ bounces, {about['batches']} batches of 64 paths per point in {duration(about['re
 <li>State: {html.escape(about['state'])}. Not tried: {html.escape(skipped)}.</li></ul>"""
 
 
-def write_page(path, about, trials, base, advice, storage):
-    """The whole page, self-contained."""
+@dataclass
+class Extras:
+    """What stands below the trials: ways to store directions, approximations, pictures of pages."""
+
+    storage: dict = field(default_factory=dict)
+    shortcuts: list = field(default_factory=list)
+    pictures: list = field(default_factory=list)
+
+
+def _side(side):
+    e = side.error
+    return [side.how, percent(e.total.value), percent(e.bias.value), duration(side.seconds)]
+
+
+def _cells(values):
+    return "<tr>" + "".join(f"<td>{html.escape(v)}</td>" for v in values) + "</tr>"
+
+
+def shortcut_table(shortcuts, storage):
+    """Each approximation with it and without."""
+    side = "<th>{}</th><th>error</th><th>bias</th><th>bake</th>"
+    head = (
+        "<th>approximation</th><th>changes</th>"
+        + side.format("with")
+        + side.format("without")
+        + "<th>Ajar</th>"
+    )
+    rows = [[s.name, percent(s.apart.value), *_side(s.taken), *_side(s.avoided), s.ajar] for s in shortcuts]
+    ahd, full = (
+        next((b for name, b in storage.items() if name.startswith(k)), None) for k in ("AHD", "SH of 9")
+    )
+    if ahd and full:
+        sides = [("AHD, 8 bytes a texel", ahd), ("SH of 9, 54 bytes", full)]
+        both = [c for name, b in sides for c in (name, percent(b.value), "", "same")]
+        rows.append(["AHD storage, at tilted normals", "", *both, "with"])
+    return f"<table><tr>{head}</tr>{''.join(map(_cells, rows))}</table>" + SHORTCUT_NOTE
+
+
+SHORTCUT_NOTE = """<p>The approximations are those of Seyb et al. 2020 (UberBake). States: light sets on and doors open by
+even chance, with all doors open in the rows about doors. "Changes" says how far the light is apart with and without: root mean
+square of relative differences, noise left out. Error and bias are against the truth, with what texels are too wide for. "One bounce
+behind doors" is traced by the reference, and its time is that of a bake with one bounce, the least that it could take.</p>"""
+
+
+def _pictures(pictures):
+    figures = "".join(
+        f'<figure><img src="{uri}" alt="{html.escape(c)}"><figcaption>{html.escape(c)}</figcaption></figure>'
+        for c, uri in pictures
+    )
+    return f"<h2>Where the error lies</h2><p>Relative, 1% dark blue to 100% red, by logarithm.</p>{figures}"
+
+
+def write_page(path, about, trials, advice, extras):
+    """The whole page, self-contained. trials: the preset first."""
+    base, storage = trials[0], extras.storage
     front = frontier(trials)
     knobs = dict.fromkeys(t.knob for t in trials if t.knob != base.knob)
     parts = [
@@ -183,6 +238,10 @@ def write_page(path, about, trials, base, advice, storage):
         "<h2>Along each knob</h2>" + "".join(knob_chart(k, trials, base) for k in knobs),
         "<h2>Does the bake know its error?</h2>" + estimate_chart(trials),
     ]
+    if extras.pictures:
+        parts.append(_pictures(extras.pictures))
+    if extras.shortcuts:
+        parts.append("<h2>What approximations cost</h2>" + shortcut_table(extras.shortcuts, storage))
     if storage:
         rows = [(name, b.value, (b.low, b.high)) for name, b in storage.items()]
         parts.append(

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from . import advice, bakes, knobs, measure, page, storage
+from . import advice, bakes, knobs, measure, page, pictures, shortcuts, still, storage
 
 TRUE_BOUNCES = 32
 SEEDS = (101, 202)
@@ -48,8 +48,8 @@ class Study:
         self.weights = self.base_scene.weights(wishes.state)
         self.settings = {**self.base_scene.data["settings"], **bakes.presets()[wishes.preset]}
         self.skipped = []
-        # Directional storage is measured by as much brute force again.
-        self._seconds = wishes.budget + wishes.reference_seconds * (1 if self.base_scene.elements else 2)
+        # Directional storage is measured by as much brute force again, and so are the states of elements.
+        self._seconds = wishes.budget + wishes.reference_seconds * (3 if self.base_scene.elements else 2)
 
     def scene(self, factor):
         """The level at a density, over the wanted one; None if there is none."""
@@ -62,12 +62,12 @@ class Study:
         self.host.progress(self._stage, self._clock.wall(), max(self._seconds, self._clock.wall()))
         return self.host.cancelled()
 
-    def _trace(self, seconds, **choices):
+    def trace_state(self, weights, seconds, scene=None, **choices):
         """The truth at the points, and the reference that found it."""
         reference = bakes.Reference(
             self.library,
-            self.base_scene,
-            self.weights,
+            scene or self.base_scene,
+            weights,
             TRUE_BOUNCES,
             self.wishes.points,
             seconds,
@@ -76,10 +76,16 @@ class Study:
         )
         return measure.Truth(reference.luminance, reference.stderr), reference
 
+    def same_places(self, reference):
+        """Which points of a reference are those of the truth: places that another state hides were drawn anew."""
+        names = ["instance", "triangle", "u", "v"]
+        own, others = self.reference.points, reference.points
+        return np.all([own[n] == others[n] for n in names], axis=0)
+
     def trace(self):
         """The truth."""
         self._stage = "tracing the true light"
-        self.truth, self.reference = self._trace(self.wishes.reference_seconds)
+        self.truth, self.reference = self.trace_state(self.weights, self.wishes.reference_seconds)
         noise = advice.percent(self.truth.noise())
         self.host.say(f"reference: {self.reference.batches} batches, {noise} per point")
 
@@ -93,12 +99,15 @@ class Study:
             raise RuntimeError("the level's triangles are not the same at another density")
         return scene.page_uv(points)
 
-    def _bake(self, scene, settings):
+    def bake_once(self, settings, scene=None, mixes=()):
+        """One bake, of the level at the wanted density unless told otherwise."""
+        scene = scene or self.base_scene
+        weights = self.weights if scene.elements else ()
+        return bakes.Lightmaps(self.library, scene, weights, self._cancelled, mixes, **settings)
+
+    def bake(self, scene, settings, mixes=()):
         """Two bakes that differ in their seeds."""
-        return [
-            bakes.Lightmaps(self.library, scene, self.weights, self._cancelled, **{**settings, "seed": seed})
-            for seed in SEEDS
-        ]
+        return [self.bake_once({**settings, "seed": seed}, scene, mixes) for seed in SEEDS]
 
     def measure(self, trial):
         """Bakes a trial twice and compares. False if its density is not there."""
@@ -106,7 +115,7 @@ class Study:
         scene = self.scene(trial.density)
         if scene is None:
             return False
-        maps = self._bake(scene, {**self.settings, **trial.settings})
+        maps = self.bake(scene, {**self.settings, **trial.settings})
         pages, uv = self.places(scene)
         lights = [m.luminance(pages, uv) for m in maps]
         estimated, true = measure.estimate_check(*maps)
@@ -123,6 +132,8 @@ class Study:
             "report_rms_other_seed": reports[1]["error"]["estimated_rms"],
         }
         e = trial.results["error"]
+        if trial.name == self.wishes.preset:
+            self.pictures = pictures.of_pages(maps[0], pages, uv, np.sqrt(np.maximum(e.squares, 0.0)))
         self.host.say(
             f"{trial.name:32} {advice.duration(trial.results['seconds']):>8}  error {advice.percent(e.total.value)}"
             f"  noise {advice.percent(e.noise.value)}  bias {advice.percent(e.bias.value)}"
@@ -143,6 +154,7 @@ class Study:
             "positions per texel": self.settings["positions_per_texel"],
             "bounces": self.settings["bounces"],
             "keep threshold": self.settings["term_threshold"],
+            "door rays": self.settings["door_rays"],
         }
         for trial in others:
             if watch.wall() + 2 * trial.cost * preset.results["wall"] > wishes.budget:
@@ -152,20 +164,32 @@ class Study:
         return [preset] + [t for t in others if t.results]
 
     def storage(self):
-        """Error of each way to store directional light, over tilted normals; nothing with elements, whose SH are
-        not kept."""
-        if self.base_scene.elements:
-            return {}
+        """Error of each way to store directional light, over tilted normals. A level with elements is measured with
+        all its light sets on and nothing else changed."""
         self._stage = "ways to store directions"
+        scene = self.base_scene
+        if scene.elements:
+            scene = bakes.SceneFile(still.without_elements(scene.folder))
         pages, uv = self.places(self.base_scene)
-        maps = self._bake(self.base_scene, {**self.settings, "keep_sh": True})
+        maps = self.bake(scene, {**self.settings, "keep_sh": True})
         squares = {}
         for n in storage.NORMALS:
-            truth, _ = self._trace(self.wishes.reference_seconds / len(storage.NORMALS), seed=7, normal=n)
-            first, second = (storage.formats(m, pages, uv, n) for m in maps)
+            seconds = self.wishes.reference_seconds / len(storage.NORMALS)
+            truth, reference = self.trace_state((), seconds, scene, seed=7, normal=n)
+            same = self.same_places(reference)
+            truth = measure.Truth(truth.luminance[same], truth.stderr[same])
+            first, second = (storage.formats(m, pages[same], uv[same], n) for m in maps)
             for name in first:
                 squares.setdefault(name, []).append(measure.error(truth, first[name], second[name]).squares)
         return {name: measure.band_of(np.mean(parts, axis=0)) for name, parts in squares.items()}
+
+    def shortcuts(self):
+        """What approximations cost in levels with elements."""
+        if not self.base_scene.elements:
+            return []
+        self._stage = "what approximations cost"
+        states = 1 if self.wishes.quick else shortcuts.RANDOM_STATES
+        return shortcuts.Comparison(self, states).run()
 
     def about(self):
         """What the page says of itself."""
@@ -190,12 +214,14 @@ class Study:
         """Measures, and leaves page, table and JSON in a folder. Returns what they say, in sentences."""
         self.trace()
         trials = self.bakes()
-        stored, about = self.storage(), self.about()
+        stored, cuts, about = self.storage(), self.shortcuts(), self.about()
         words = advice.recommend(trials, trials[0], measure.differs, self.truth.noise())
         rows = [page.row(t, advice.frontier(trials)) for t in trials]
         out.mkdir(parents=True, exist_ok=True)
         page.write_csv(out / TABLE, rows)
         formats = {name: band.as_json() for name, band in stored.items()}
-        bakes.write_json(out / DATA, {"about": about, "advice": words, "trials": rows, "storage": formats})
-        page.write_page(out / PAGE, about, trials, trials[0], words, stored)
+        told = [s.as_json() for s in cuts]
+        data = {"about": about, "advice": words, "trials": rows, "storage": formats, "shortcuts": told}
+        bakes.write_json(out / DATA, data)
+        page.write_page(out / PAGE, about, trials, words, page.Extras(stored, cuts, self.pictures))
         return words

@@ -222,6 +222,7 @@ class ReferenceSettings(c.Structure):
         ("normal", f32 * 3),
         ("weight_count", u32),
         ("weights", floats),
+        ("door_bounces", u32),
     ]
 
 

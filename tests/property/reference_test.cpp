@@ -170,6 +170,32 @@ TEST(Reference, AgreesInStatesOfLampDoorAndToggle) {
     }
 }
 
+TEST(Reference, LightThatStopsBehindADoorIsPartOfAllLight) {
+    const Rooms rooms;
+    const auto trace = [&](const std::vector<float>& weights, uint32_t door_bounces) {
+        ajar_reference_settings s = kit::reference_settings(6, 400, 16);
+        s.weight_count = 3, s.weights = weights.data(), s.door_bounces = door_bounces;
+        return kit::trace(rooms.scene, s);
+    };
+    const std::vector<float> open{1, 1, 1}, shut{1, 0, 1};
+    const auto closed = trace(shut, AJAR_NONE);
+    // The dim room's points: what comes through the door can only add to their light.
+    const auto light = [&](const std::vector<ajar_reference_point>& points) {
+        double sum = 0.0;
+        for (size_t i = 0; i < points.size(); ++i)
+            sum += closed[i].irradiance[0] < 0.5f ? points[i].irradiance[0] : 0.0;
+        return sum;
+    };
+    const double none = light(closed), direct = light(trace(open, 0)), one = light(trace(open, 1)),
+                 six = light(trace(open, 6)), all = light(trace(open, AJAR_NONE));
+    EXPECT_GT(none, 0.0);
+    EXPECT_LT(none, 0.97 * direct);
+    EXPECT_LT(direct, 0.97 * one);
+    EXPECT_LT(one, 0.97 * all);
+    EXPECT_NEAR(six, all, 1e-6 * all) << "the same paths";
+    EXPECT_EQ(light(trace(shut, 1)), none);
+}
+
 TEST(Reference, ChoosesNoPlaceThatNobodySees) {
     // A pillar between floor and ceiling, a crate without a bottom, and a plate just above the floor: only under
     // them it is black.

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The accuracy command's arithmetic, on made-up bakes whose errors are known."""
+import json
+import zlib
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 
-from blender_addon.accuracy import advice, bakes, knobs, measure, page, storage
+from blender_addon.accuracy import advice, bakes, knobs, measure, page, pictures, shortcuts, still, storage
 
 COUNT = 20000
 
@@ -140,8 +143,16 @@ def test_page_is_whole_and_needs_nothing_else(tmp_path):
     about.update(reference_seconds=3.0, reference_noise=0.01, state="x", skipped=["y"])
     all_trials = trials()
     bands = {"flat": measure.Band(0.2, 0.1, 0.3)}
-    page.write_page(tmp_path / "p.html", about, all_trials, all_trials[0], ["words & numbers"], bands)
+    sides = [
+        shortcuts.Side(how, [], made_up(bias, 0.05), seconds)
+        for how, bias, seconds in (("cheap & quick", 0.2, 3.0), ("dear", 0.0, 9.0))
+    ]
+    cuts = [shortcuts.Shortcut("doors", *sides, measure.Band(0.19, 0.1, 0.3), "without")]
+    picture = ("page", pictures.data_uri(np.zeros((4, 5, 3), np.uint8)))
+    extras = page.Extras(bands, cuts, [picture])
+    page.write_page(tmp_path / "p.html", about, all_trials, ["words & numbers"], extras)
     text = (tmp_path / "p.html").read_text(encoding="utf-8")
+    assert "cheap &amp; quick" in text and "19%" in text and 'src="data:image/png' in text
     assert "a&lt;b" in text and "words &amp; numbers" in text
     assert "http" not in text and "<script" not in text and "nan%" not in text
     drawings = text.split("<svg")[1:]
@@ -165,3 +176,72 @@ def test_plan_tries_every_knob_in_the_engine_s_ranges(quick):
             for name in ("samples", "bounce_samples"):
                 value = t.settings.get(name, 1)
                 assert value & (value - 1) == 0, t.name
+
+
+ELEMENTS = [
+    {"name": "left", "kind": "light_set", "weight": 1.0},
+    {"name": "right", "kind": "light_set", "weight": 1.0},
+    {"name": "gate", "kind": "door", "weight": 0.0},
+    {"name": "crate", "kind": "toggle", "weight": 1.0},
+]
+
+
+def light_in(share, terms):
+    return sum(share(elements) * light for elements, light in terms.items())
+
+
+def test_few_states_are_right_where_all_sets_are_on_and_wrong_where_some_are_not():
+    terms = {(): 1.0, (0,): 2.0, (1,): 3.0, (2,): 0.5, (0, 2): 4.0, (1, 2): 0.25, (1, 3): -0.5}
+    for weights in ([1, 1, 1, 1], [1, 0, 0, 1], [0, 1, 0, 0], [0.3, 0.7, 0, 1]):
+        few, full = shortcuts.few_states(ELEMENTS, weights), bakes.product_of(weights)
+        assert light_in(few, terms) == pytest.approx(light_in(full, terms)), weights
+    few, full = shortcuts.few_states(ELEMENTS, [0, 1, 1, 1]), bakes.product_of([0, 1, 1, 1])
+    assert light_in(few, terms) - light_in(full, terms) == pytest.approx(4.0), "what comes from the other set"
+
+
+def test_random_states_leave_toggles_and_open_all_doors_once():
+    states = shortcuts.random_states(ELEMENTS, 8)
+    assert states[0][2] == 1.0 and {s[2] for s in states} == {0.0, 1.0}
+    assert {s[3] for s in states} == {1.0} and {s[0] for s in states} == {0.0, 1.0}
+
+
+def test_apart_leaves_noise_out():
+    random = np.random.default_rng(3)
+    light = np.ones(COUNT)
+    noisy = lambda level: light * level + 0.1 * random.normal(size=COUNT)  # noqa: E731
+    band = measure.apart(light, (noisy(1.05), noisy(1.05)), (noisy(1.0), noisy(1.0)))
+    assert band.value == pytest.approx(0.05, abs=0.01)
+
+
+def test_a_scene_as_it_stands_has_only_what_is_there(tmp_path):
+    folder = tmp_path / "snapshot"
+    folder.mkdir()
+    (folder / "snapshot.bin").write_bytes(b"arrays")
+    leaf = lambda name, **more: {"name": name, "visibility": ["gather"], **more}  # noqa: E731
+    data = {
+        "elements": ELEMENTS,
+        "lights": [{"name": "lamp", "light_set": 1}],
+        "instances": [
+            leaf("wall"),
+            leaf("leaf", element=2),
+            leaf("leaf open", element=2, open_pose=True),
+            leaf("crate", element=3),
+        ],
+    }
+    (folder / "snapshot.json").write_text(json.dumps(data), encoding="utf-8")
+    told = json.loads((Path(still.without_elements(folder)) / "snapshot.json").read_text(encoding="utf-8"))
+    seen = {i["name"] for i in told["instances"] if i["visibility"]}
+    assert (
+        seen == {"wall", "leaf", "crate"} and "elements" not in told and "light_set" not in told["lights"][0]
+    )
+    bare = Path(still.without_open_poses(folder))
+    assert (bare / "snapshot.bin").read_bytes() == b"arrays"
+    told = json.loads((bare / "snapshot.json").read_text(encoding="utf-8"))
+    assert [i["name"] for i in told["instances"] if not i["visibility"]] == ["leaf open"]
+
+
+def test_pictures_are_readable_pngs():
+    ramp = pictures.colours(np.array([[0.001, 0.01, 0.1, 1.0, 5.0]]))
+    assert (ramp[0, 0] == ramp[0, 1]).all() and (ramp[0, 3] == ramp[0, 4]).all()
+    file = pictures.png(ramp)
+    assert file.startswith(b"\x89PNG") and zlib.crc32(file[12:29]) == int.from_bytes(file[29:33], "big")

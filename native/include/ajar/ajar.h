@@ -390,6 +390,8 @@ typedef struct ajar_reference_settings {
     float normal[3];     /* receiver's normal in the tangent frame, 0 0 1 = the surface's own; unit, z > 0 */
     uint32_t weight_count; /* 0, or the number of elements */
     const float* weights;  /* [weight_count] state of every element; weight_count 0: as at the start */
+    uint32_t door_bounces; /* reflections that light may have had behind an open door to count, AJAR_NONE: any. To
+                              judge bakers that stop there (Seyb et al. 2020 at 1); such light is then missing */
 } ajar_reference_settings;
 AJAR_API void ajar_reference_settings_init(ajar_reference_settings* settings);
 

@@ -52,6 +52,7 @@ ReferenceSettings checked_settings(const ajar_reference_settings* settings, cons
     out.whole_texels = s.texel_mean != 0;
     out.normal = checked_normal(s.normal);
     out.weights = checked_weights(s, scene);
+    out.door_bounces = s.door_bounces;
     return out;
 }
 

@@ -94,6 +94,7 @@ AJAR_API void ajar_reference_settings_init(ajar_reference_settings* s) {
     s->bounces = 6;
     s->batches = 64;
     s->normal[2] = 1.0f;
+    s->door_bounces = AJAR_NONE;
 }
 
 AJAR_API void ajar_term_info_init(ajar_term_info* t) { init_struct(t); }

@@ -19,7 +19,34 @@ struct PathTracer::Walk {
     Vec3 sum{0.0f};
     uint32_t mapped = 0; ///< reflections off lightmaps so far
     uint32_t length = 0; ///< all reflections
+    bool behind_door = false;
 };
+
+PathTracer::PathTracer(const World& world, const Lights& lights, uint32_t bounces, uint32_t door_bounces,
+                       const std::vector<float>& weights)
+    : world_(world), lights_(lights), bounces_(bounces), door_bounces_(door_bounces), closed_(weights) {
+    for (size_t e = 0; e < closed_.size(); ++e)
+        if (world.scene.elements[e].kind == ElementKind::door) closed_[e] = 0.0f;
+}
+
+/// What the path meets next.
+SceneState PathTracer::state_of(const Walk& walk) const {
+    if (walk.length <= door_bounces_ || walk.behind_door) return walk.state;
+    return {closed_, walk.state.draw, walk.state.own};
+}
+
+/// Whether the way to a hit, or to the sky, leads where the leaf of a door is when it is closed.
+bool PathTracer::leaves_by_door(const Walk& walk, const Ray& ray, const Hit& end) const {
+    Ray way = ray;
+    if (end.triangle != kMiss) way.tfar = end.t * (1.0f - 1e-4f);
+    std::vector<Hit> switches;
+    world_.tracer.all_hits(way, kMaskGatherSwitch, switches);
+    const SceneState closed{closed_, walk.state.draw, walk.state.own};
+    return std::any_of(switches.begin(), switches.end(), [&](const Hit& h) {
+        const Presence p = world_.scene.presence(h.triangle);
+        return closed.is_there(p) && !walk.state.is_there(p);
+    });
+}
 
 Vec3 cosine_direction(const Vec3& n, const Vec2& u, float& cosine) {
     const float r = std::sqrt(u.x), angle = 2.0f * kPi * u.y;
@@ -32,7 +59,7 @@ Vec3 PathTracer::irradiance(Vertex receiver, const Vec2& first, const SceneState
     Walk walk{receiver, state, random};
     Vec2 u = first;
     while (true) {
-        walk.sum += walk.through * lights_.direct(walk.at, state, random);
+        walk.sum += walk.through * lights_.direct(walk.at, state_of(walk), random);
         float cosine;
         const Vec3 w = cosine_direction(walk.at.normal, u, cosine);
         if (!(glm::dot(w, walk.at.side) > 0.0f) || !follow(walk, w, cosine)) return walk.sum;
@@ -44,9 +71,12 @@ Vec3 PathTracer::irradiance(Vertex receiver, const Vec2& first, const SceneState
 /// Goes along a ray to the next surface that reflects; false if the path ends.
 bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
     const Sky& sky = world_.scene.sky;
+    const SceneState state = state_of(walk);
     Ray ray{walk.at.position, direction};
     for (int layer = 0; layer < kMaxLayers; ++layer) {
-        const Hit hit = world_.meet(ray, walk.state);
+        const Hit hit = world_.meet(ray, state);
+        if (door_bounces_ != kAnyBounces && walk.length <= door_bounces_)
+            walk.behind_door = walk.behind_door || leaves_by_door(walk, ray, hit);
         if (hit.triangle == kMiss) {
             if (sky.lit())
                 walk.sum +=

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kTries = 256;
 constexpr int kSideProbes = 8;
+constexpr int kEnclosureRays = 32;
 constexpr uint32_t kMaxRow = 1u << 14; ///< no page is larger
 constexpr float kCoverHeight = 0.125f; ///< texels above the surface
 constexpr float kProbeHeight = 0.25f;  ///< texels above the surface
@@ -107,7 +108,7 @@ bool PointChooser::draw(ReferencePoint& point, Pcg& random) const {
     if (p.x < 0.0f || p.y < 0.0f || p.x >= static_cast<float>(page.width) || p.y >= static_cast<float>(page.height))
         return false;
     point.x = static_cast<uint32_t>(p.x), point.y = static_cast<uint32_t>(p.y);
-    return !is_buried(point.place) && !is_covered(point.place);
+    return !is_buried(point.place) && !is_covered(point.place) && !is_enclosed(point.place);
 }
 
 Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) const {
@@ -136,6 +137,23 @@ bool PointChooser::is_buried(const Place& p) const {
         inside += world_.is_inside(hit);
     }
     return inside >= 2 || backs == 3;
+}
+
+/// Where something else sticks into the solid around a place, single rays end on its front; most do not.
+bool PointChooser::is_enclosed(const Place& p) const {
+    const Frame f = frame_from_normal(world_.scene.geometric_normal(p.triangle));
+    const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z);
+    SceneState state = state_;
+    state.own = world_.scene.presence(p.triangle);
+    int inside = 0;
+    for (int i = 0; i < kEnclosureRays; ++i) { // cosine distributed, on a spiral
+        const float up = (static_cast<float>(i) + 0.5f) / kEnclosureRays, r = std::sqrt(1.0f - up);
+        const float angle = 2.39996f * static_cast<float>(i);
+        const Vec3 w(r * std::cos(angle), r * std::sin(angle), std::sqrt(up));
+        const Hit hit = world_.meet({origin, f.to_world(w)}, state);
+        inside += hit.triangle != kMiss && world_.is_inside(hit);
+    }
+    return 2 * inside >= kEnclosureRays;
 }
 
 bool PointChooser::is_covered(const Place& p) const {

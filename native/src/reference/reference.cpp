@@ -70,7 +70,7 @@ ReferenceResult trace_reference(const Snapshot& scene, const Tracer& tracer, con
                                 ThreadPool& pool, Progress& progress) {
     const World world(scene, tracer);
     const Lights lights(world, settings.weights);
-    const PathTracer paths(world, lights, settings.bounces);
+    const PathTracer paths(world, lights, settings.bounces, settings.door_bounces, settings.weights);
     const PointChooser chooser(world, settings.by_texel, settings.whole_texels, {settings.weights});
     const std::vector<ReferencePoint> points = chooser.choose(settings.points, settings.point_seed);
     const Integrator integrator{world, paths, chooser, settings};

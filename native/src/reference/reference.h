@@ -14,10 +14,11 @@ struct ReferenceSettings {
     uint32_t batches = 64;   ///< most of them
     float time_limit = 0.0f; ///< s; no batch starts after it but the first kLeastBatches; 0: none
     uint64_t seed = 0, point_seed = 0;
-    bool by_texel = false;      ///< choose among texels, not by area
-    bool whole_texels = false;  ///< mean over the texel, not the light at the place
-    Vec3 normal{0, 0, 1};       ///< of the receiver, in the texel's tangent frame
-    std::vector<float> weights; ///< per element
+    bool by_texel = false;               ///< choose among texels, not by area
+    bool whole_texels = false;           ///< mean over the texel, not the light at the place
+    Vec3 normal{0, 0, 1};                ///< of the receiver, in the texel's tangent frame
+    std::vector<float> weights;          ///< per element
+    uint32_t door_bounces = kAnyBounces; ///< as of PathTracer
 };
 
 /// Irradiance at a chosen place with the spread of its batches.

@@ -7,6 +7,8 @@
 
 namespace ajar {
 
+inline constexpr uint32_t kAnyBounces = 0xffffffffu;
+
 /// Weights of all elements, and the doors and toggles that one path meets. Between 0 and 1 a door or
 /// toggle is there by chance: light is a polynomial without squares in the weights, so the mean over
 /// such draws is the light at the weights themselves.
