@@ -66,25 +66,27 @@ TEST(NoisePlan, TilesGetWhatTheirPartsNeed) {
     EXPECT_EQ(plan[0].gather, 64u);
     EXPECT_EQ(plan[0].direct, 16u);
     EXPECT_EQ(plan[1].gather, 512u); // a variance of 16 times the budget with 32 rays
-    goal.model.calibration = 0.25f;
+    goal.model.gather_calibration = goal.model.direct_calibration = 0.25f;
     EXPECT_EQ(plan_tiles(pilot, {32, 32}, goal)[1].gather, 128u);
 }
 
 TEST(NoisePlan, TheModelLearnsHowNoiseFalls) {
     std::vector<NoiseTrial> trials;
     for (int i = 0; i < 20; ++i) {
-        NoiseTrial t{noise(0.4f), noise(0.4f), 0.0f, 0.0f};
+        NoiseTrial t{noise(0.4f), noise(0.4f), {}, {}};
         t.many.gather_variance *= std::pow(8.0f, -1.3f);
         t.many.direct_variance *= std::pow(8.0f, -0.7f); // rare bright samples; not believed
-        t.strata_variance = t.many.gather_variance + t.many.direct_variance;
-        t.twin_variance = 0.5f * t.strata_variance;
+        t.strata = t.many;
+        t.twin = {0.0f, 0.5f * t.strata.gather_variance, 0.1f * t.strata.direct_variance};
+        if (i % 10 == 0) t.twin.gather_variance *= 50.0f; // rare bright samples
         trials.push_back(t);
     }
     const NoiseModel model = fit_noise_model(trials, {32, 32}, {256, 256});
     EXPECT_NEAR(model.gather_power, 1.3f, 1e-4f);
     EXPECT_EQ(model.direct_power, 1.0f);
-    EXPECT_NEAR(model.calibration, 0.5f, 1e-4f);
-    EXPECT_EQ(fit_noise_model({}, {32, 32}, {256, 256}).calibration, 1.0f);
+    EXPECT_NEAR(model.gather_calibration, 0.5f / 0.8f, 1e-4f);
+    EXPECT_NEAR(model.direct_calibration, 0.1f / 0.8f, 1e-4f);
+    EXPECT_EQ(fit_noise_model({}, {32, 32}, {256, 256}).gather_calibration, 1.0f);
 }
 
 } // namespace

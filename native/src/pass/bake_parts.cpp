@@ -81,13 +81,13 @@ GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, 
 
 size_t calibration_step(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTwins, 1, kCalibrationStep); }
 
-Vec2 compare_twins(float a, float b, double standard_error) {
+Vec2 compare_twins(float a, float b, double variance) {
     const float level = 0.5f * (a + b);
     if (!(level > 0.0f)) return Vec2(0.0f);
-    const double se = standard_error / level;
-    if (se < 1e-5) return Vec2(0.0f);
+    const double relative = variance / (double{level} * level);
+    if (relative < 1e-10) return Vec2(0.0f);
     const float d = (a - b) / level;
-    return {0.5f * d * d, static_cast<float>(se * se)};
+    return {0.5f * d * d, static_cast<float>(relative)};
 }
 
 float error_calibration(const std::vector<Vec2>& parts) {

@@ -55,9 +55,9 @@ GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, 
 /// Every how manyth tile is estimated twice, to correct the stated error: of few tiles more.
 size_t calibration_step(size_t tiles);
 
-/// Half the squared difference of two answers for a receiver, and what the strata say it should be, both over the
-/// squared level; 0, 0 where they say nothing of each other.
-Vec2 compare_twins(float a, float b, double standard_error);
+/// Half the squared difference of two answers for a receiver, and what the strata of both say it should be, both over
+/// the squared level; 0, 0 where they say nothing of each other. variance: mean of the two.
+Vec2 compare_twins(float a, float b, double variance);
 
 /// Factor of the strata's standard errors, from the sums of compare_twins() of a bake; 1 if they are too few.
 float error_calibration(const std::vector<Vec2>& parts);

@@ -69,14 +69,20 @@ DirectGroups Baker::look_around(const Tile& tile, uint32_t seed) {
 
 NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
                             uint32_t seed) {
-    NoiseTrial trial{few, {}, 0.0f, 0.0f};
+    NoiseTrial trial{few, {}, {}, {}};
     const TileEstimate a = estimate(part, rays, groups, {}, hash_combine(seed, 1), false),
                        b = estimate(part, rays, groups, {}, hash_combine(seed, 2), false);
     mean_noise(a, 0, part.count, trial.many);
-    trial.strata_variance = trial.many.gather_variance + trial.many.direct_variance;
+    mean_noise(b, 0, part.count, trial.strata);
+    trial.strata.gather_variance = 0.5f * (trial.strata.gather_variance + trial.many.gather_variance);
+    trial.strata.direct_variance = 0.5f * (trial.strata.direct_variance + trial.many.direct_variance);
     for (uint32_t lane = 0; lane < part.count; ++lane) {
-        const float d = luminance(a.irradiance(lane) - b.irradiance(lane));
-        trial.twin_variance += 0.5f * d * d / static_cast<float>(part.count);
+        const auto half_square = [&](const Vec3& d) {
+            return 0.5f * luminance(d) * luminance(d) / static_cast<float>(part.count);
+        };
+        trial.twin.gather_variance += half_square(gathered(*a.gather, lane) - gathered(*b.gather, lane));
+        trial.twin.direct_variance +=
+            half_square((sum_of(*a.direct, lane) - sum_of(*b.direct, lane)) / std::max(1.0f, float(rays.direct)));
     }
     return trial;
 }
@@ -228,8 +234,9 @@ void Baker::calibrate_error() {
                          further_[i].share);
             for (uint32_t lane = 0; lane < tile.count; ++lane) {
                 const size_t r = tile.first + lane;
+                const double own = double{result_.standard_error[r]} * result_.standard_error[r];
                 parts[k] += compare_twins(luminance(result_.irradiance[r]), luminance(twin.irradiance[lane]),
-                                          result_.standard_error[r]);
+                                          0.5 * (own + twin.variance[lane]));
             }
         },
         false);

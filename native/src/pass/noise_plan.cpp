@@ -11,6 +11,8 @@ namespace {
 constexpr uint32_t kLeastMore = 16;
 constexpr uint32_t kTrialRays = 256; ///< of each kind
 constexpr size_t kLeastTrials = 8;
+constexpr float kLeastCalibration = 0.05f;
+constexpr float kMiddleOfMean = 0.8f; ///< typical over mean ratio: some places are noisier than their neighbours tell
 constexpr float kMostPower = 1.6f;
 constexpr uint32_t kStep = 256; ///< counts above it are multiples of it, others powers of two
 
@@ -56,12 +58,29 @@ double variance_with(const MeasuredNoise& n, const RayPlan& measured, const RayP
            scaled(n.direct_variance, measured.direct, rays.direct, model.direct_power);
 }
 
+/// The middle of some numbers; 0 of too few.
+float typical(std::vector<float> values) {
+    if (values.size() < kLeastTrials) return 0.0f;
+    const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
 /// Power p by which a variance fell: the middle of log(few / many) over log(rays).
 float typical_power(std::vector<float> falls, float growth) {
-    if (falls.size() < kLeastTrials || !(growth > 1.0f)) return 1.0f;
-    const auto middle = falls.begin() + static_cast<ptrdiff_t>(falls.size() / 2);
-    std::nth_element(falls.begin(), middle, falls.end());
-    return std::clamp(*middle / std::log(growth), 1.0f, kMostPower);
+    return growth > 1.0f ? std::clamp(typical(std::move(falls)) / std::log(growth), 1.0f, kMostPower) : 1.0f;
+}
+
+/// Middle of twin over strata variances; 1 of too few.
+float typical_calibration(std::vector<float> ratios) {
+    if (ratios.size() < kLeastTrials) return 1.0f;
+    return std::clamp(typical(std::move(ratios)) / kMiddleOfMean, kLeastCalibration, 1.0f);
+}
+
+/// What a strata estimate says of the true variance.
+MeasuredNoise calibrated(MeasuredNoise n, const NoiseModel& model) {
+    n.gather_variance *= model.gather_calibration, n.direct_variance *= model.direct_calibration;
+    return n;
 }
 
 } // namespace
@@ -77,30 +96,27 @@ RayPlan trial_rays(const RayPlan& most, bool gathers) {
 bool is_trial(size_t tile, uint32_t part) { return tile % kTrialStep == 0 && part == tile / kTrialStep % kPilotParts; }
 
 NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many) {
-    std::vector<float> gather, direct;
-    double twin = 0.0, strata = 0.0;
+    std::vector<float> falls[2], ratios[2];
     for (const NoiseTrial& t : trials) {
-        if (t.many.gather_variance > 0.0f && t.few.gather_variance > 0.0f)
-            gather.push_back(std::log(t.few.gather_variance / t.many.gather_variance));
-        if (t.many.direct_variance > 0.0f && t.few.direct_variance > 0.0f)
-            direct.push_back(std::log(t.few.direct_variance / t.many.direct_variance));
-        const double level = double(t.many.level) * t.many.level;
-        if (!(level > 0.0) || !(t.strata_variance > 1e-10 * level)) continue;
-        twin += t.twin_variance / level, strata += t.strata_variance / level;
+        const float least = 1e-10f * t.many.level * t.many.level;
+        const auto learn = [&](size_t kind, float MeasuredNoise::*v) {
+            if (t.many.*v > 0.0f && t.few.*v > 0.0f) falls[kind].push_back(std::log(t.few.*v / t.many.*v));
+            if (t.strata.*v > least) ratios[kind].push_back(t.twin.*v / t.strata.*v);
+        };
+        learn(0, &MeasuredNoise::gather_variance);
+        learn(1, &MeasuredNoise::direct_variance);
     }
     const auto growth = [](uint32_t a, uint32_t b) { return a > 0 ? float(b) / static_cast<float>(a) : 1.0f; };
-    NoiseModel model;
-    model.gather_power = typical_power(std::move(gather), growth(few.gather, many.gather));
-    model.direct_power = typical_power(std::move(direct), growth(few.direct, many.direct));
-    if (trials.size() >= kLeastTrials && strata > 0.0)
-        model.calibration = static_cast<float>(std::clamp(twin / strata, 0.25, 1.0));
-    return model;
+    return {typical_calibration(std::move(ratios[0])), typical_calibration(std::move(ratios[1])),
+            typical_power(std::move(falls[0]), growth(few.gather, many.gather)),
+            typical_power(std::move(falls[1]), growth(few.direct, many.direct))};
 }
 
-RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal) {
+RayPlan missing_rays(const MeasuredNoise& measured, const RayPlan& done, const NoiseGoal& goal) {
     if (!(goal.target > 0.0f)) return {};
-    const double allowed = double(goal.target) * (noise.level + goal.dark),
-                 budget = allowed * allowed / goal.model.calibration, first = variance(noise);
+    const MeasuredNoise noise = calibrated(measured, goal.model);
+    const double allowed = double(goal.target) * (noise.level + goal.dark), budget = allowed * allowed,
+                 first = variance(noise);
     if (!(first > budget) || !std::isfinite(first)) return {};
     // Averaged by inverse variance, both answers together reach the budget.
     const Wanted wanted = rays_for(noise, done, std::max(budget * first / (first - budget), 1e-30), goal.model);
@@ -125,11 +141,11 @@ std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const R
         };
         double gather = 0.0, direct = 0.0;
         for (size_t k = 0; k < kPilotParts; ++k) {
-            const MeasuredNoise noise{parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
-                                      pooled(k, &MeasuredNoise::direct_variance)};
+            const MeasuredNoise noise = calibrated({parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
+                                                    pooled(k, &MeasuredNoise::direct_variance)},
+                                                   goal.model);
             const double allowed = double(goal.target) * (noise.level + goal.dark);
-            const Wanted wanted =
-                rays_for(noise, pilot_rays, allowed * allowed / goal.model.calibration + 1e-30, goal.model);
+            const Wanted wanted = rays_for(noise, pilot_rays, allowed * allowed + 1e-30, goal.model);
             gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;
         }
         if (goal.gathers) plan[i].gather = power_of_two(gather, 64, std::max(goal.most.gather, 64u));
@@ -138,7 +154,8 @@ std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const R
     return plan;
 }
 
-float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal) {
+float share_of_more(const MeasuredNoise& measured, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal) {
+    const MeasuredNoise noise = calibrated(measured, goal.model);
     const double first = variance(noise), second = variance_with(noise, done, more, goal.model);
     return first + second > 0.0 ? static_cast<float>(first / (first + second)) : 0.5f;
 }

@@ -9,7 +9,9 @@ namespace ajar {
 
 /// How the noise of answers behaves, as a scene's pilot found it.
 struct NoiseModel {
-    float calibration = 1.0f;  ///< true variance over the strata estimate's (algorithms.md 10.2)
+    /// True variance over the strata estimate's (algorithms.md 10.2), of gathered and of sampled light: samples of
+    /// lamps are spread far more evenly than two neighbours tell.
+    float gather_calibration = 1.0f, direct_calibration = 1.0f;
     float gather_power = 1.0f; ///< variance falls with rays to this power; strata make it more than 1
     float direct_power = 1.0f;
 };
@@ -26,11 +28,11 @@ struct NoiseGoal {
 /// Noise of one place with few and with many rays, and what two answers with many say of it.
 struct NoiseTrial {
     MeasuredNoise few, many;
-    float strata_variance = 0.0f; ///< of all light with many rays
-    float twin_variance = 0.0f;   ///< of the same: half the mean squared difference of the two
+    MeasuredNoise strata; ///< of all light with many rays
+    MeasuredNoise twin;   ///< of the same: half the mean squared difference of the two
 };
 
-/// Powers are typical ones; the calibration weighs all places alike, relative to their light.
+/// Powers and calibrations are typical ones: a few places with rare bright samples say little of the others.
 NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan& few, const RayPlan& many);
 
 inline constexpr uint32_t kTrialStep = 8; ///< every n-th tile has a place where the pilot looks twice

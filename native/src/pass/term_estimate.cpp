@@ -163,11 +163,17 @@ NoiseTrial TermBaker::try_noise(const Tile& part, const MeasuredNoise& few, cons
     groups.allot(rays.direct, rays.direct);
     const Estimate a = estimate(part, rays, groups, hash_combine(seed, 1)),
                    b = estimate(part, rays, groups, hash_combine(seed, 2));
-    NoiseTrial trial{few, pilot_noise(a, part.count), 0.0f, 0.0f};
+    NoiseTrial trial{few, pilot_noise(a, part.count), {}, {}};
+    const float half = 0.5f / static_cast<float>(part.count);
     for (uint32_t lane = 0; lane < part.count; ++lane) {
-        const float share = 1.0f / static_cast<float>(part.count), d = luminance(a.total(lane) - b.total(lane));
-        trial.strata_variance += static_cast<float>(a.total_variance(lane)) * share;
-        trial.twin_variance += 0.5f * d * d * share;
+        for (const Estimate* e : {&a, &b}) {
+            trial.strata.gather_variance +=
+                half * static_cast<float>(e->gather_variance(e->gather.total_squares(lane)));
+            trial.strata.direct_variance += half * static_cast<float>(e->direct.total_squares(lane));
+        }
+        const float g = luminance(a.gathered_total(lane) - b.gathered_total(lane)),
+                    d = luminance(a.sampled_total(lane) - b.sampled_total(lane));
+        trial.twin.gather_variance += half * g * g, trial.twin.direct_variance += half * d * d;
     }
     return trial;
 }

@@ -44,11 +44,19 @@ struct TermBaker::Estimate {
         const auto *g = gathered(term, lane), *d = sampled(term, lane);
         return (g != nullptr ? gather_variance(g->squares) : 0.0) + (d != nullptr ? std::max(d->squares, 0.0) : 0.0);
     }
-    Vec3 total(uint32_t lane) const {
+    Vec3 gathered_total(uint32_t lane) const {
         Vec3 e(0.0f);
-        for (const uint32_t t : terms_at[lane]) e += irradiance(t, lane);
+        for (const uint32_t t : terms_at[lane])
+            if (const auto* b = gathered(t, lane)) e += b->color();
+        return e * gather_scale(gather, lane);
+    }
+    Vec3 sampled_total(uint32_t lane) const {
+        Vec3 e(0.0f);
+        for (const uint32_t t : terms_at[lane])
+            if (const auto* b = sampled(t, lane)) e += b->color();
         return e;
     }
+    Vec3 total(uint32_t lane) const { return gathered_total(lane) + sampled_total(lane); }
     double total_variance(uint32_t lane) const {
         return gather_variance(gather.total_squares(lane)) + direct.total_squares(lane);
     }

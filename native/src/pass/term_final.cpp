@@ -142,7 +142,7 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
                            b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
             for (uint32_t lane = 0; lane < tile.count; ++lane)
                 parts[k] += compare_twins(luminance(a.total(lane)), luminance(b.total(lane)),
-                                          std::sqrt(a.total_variance(lane)));
+                                          0.5 * (a.total_variance(lane) + b.total_variance(lane)));
         },
         false);
     result_.error_calibration = error_calibration(parts);
