@@ -12,6 +12,7 @@ namespace {
 constexpr int kTries = 256;
 constexpr int kSideProbes = 8;
 constexpr int kEnclosureRays = 32;
+constexpr float kNearBack = 4.0f;      ///< texels: so near, the back of a thing that is not closed is its inside
 constexpr uint32_t kMaxRow = 1u << 14; ///< no page is larger
 constexpr float kCoverHeight = 0.125f; ///< texels above the surface
 constexpr float kProbeHeight = 0.25f;  ///< texels above the surface
@@ -145,13 +146,14 @@ bool PointChooser::is_enclosed(const Place& p) const {
     const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z);
     SceneState state = state_;
     state.own = world_.scene.presence(p.triangle);
+    const float near = kNearBack * texel_edge(world_.scene, p.triangle);
     int inside = 0;
     for (int i = 0; i < kEnclosureRays; ++i) { // cosine distributed, on a spiral
         const float up = (static_cast<float>(i) + 0.5f) / kEnclosureRays, r = std::sqrt(1.0f - up);
         const float angle = 2.39996f * static_cast<float>(i);
         const Vec3 w(r * std::cos(angle), r * std::sin(angle), std::sqrt(up));
         const Hit hit = world_.meet({origin, f.to_world(w)}, state);
-        inside += hit.triangle != kMiss && world_.is_inside(hit);
+        inside += hit.triangle != kMiss && (world_.is_inside(hit) || (hit.back && hit.t < near));
     }
     return 2 * inside >= kEnclosureRays;
 }

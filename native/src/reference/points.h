@@ -29,7 +29,7 @@ public:
     /// Another place of the same texel, uniform over what its triangles cover.
     Place place_in_texel(const ReferencePoint& point, Pcg& random) const;
     bool is_buried(const Place& place) const;
-    /// Whether half of the light that it could get comes from insides of solids.
+    /// Whether half of the light that it could get comes from insides of solids, or backs close by.
     bool is_enclosed(const Place& place) const;
     /// Whether something hangs over a place, lower than an eighth of its texels' edge.
     bool is_covered(const Place& place) const;
