@@ -8,6 +8,19 @@ from .library import BakeError, check
 from .snapshot_io import SnapshotError
 
 
+# What wrong types, missing keys and numbers out of range raise on the way to the library.
+MALFORMED = (
+    SnapshotError,
+    KeyError,
+    IndexError,
+    TypeError,
+    AttributeError,
+    ValueError,
+    OverflowError,
+    c.ArgumentError,
+)
+
+
 class SceneBuilder:
     """Builds one ajar_scene. release() frees it; a job that runs keeps its own reference."""
 
@@ -31,11 +44,12 @@ class SceneBuilder:
             ("lights", self._light),
         )
         for key, add in steps:
-            for item in self.data.get(key, ()):
+            for item in self._items(key):
                 if cancelled():
                     return False
                 self._guarded(add, item)
-        self._guarded(self._sky, self.data.get("sky") or {"type": "none"})
+        sky = self.data.get("sky") or {"type": "none"}
+        self._guarded(self._sky, self._object("sky", sky))
         check(self.library, self.library.ajar_scene_commit(self.scene))
         return True
 
@@ -43,10 +57,22 @@ class SceneBuilder:
         """Frees the scene."""
         self.library.ajar_scene_release(c.byref(self.scene))
 
+    def _items(self, key):
+        items = self.data.get(key) or []
+        if not isinstance(items, list):
+            raise BakeError(abi.ERROR_INPUT, f"bad snapshot: {key} is no list", key)
+        return [self._object(key, item) for item in items]
+
+    @staticmethod
+    def _object(key, item):
+        if not isinstance(item, dict):
+            raise BakeError(abi.ERROR_INPUT, f"bad snapshot: {item!r} is no object", key)
+        return item
+
     def _guarded(self, add, item):
         try:
             add(item)
-        except (SnapshotError, KeyError, TypeError, ValueError) as error:
+        except MALFORMED as error:
             text = f"missing {error}" if isinstance(error, KeyError) else str(error)
             raise BakeError(abi.ERROR_INPUT, f"bad snapshot: {text}", item.get("name", "")) from error
 
@@ -186,12 +212,19 @@ def fill_settings(library, values, kind="settings"):
     """ajar_settings (or kind 'layout_settings') with defaults, overridden by values by name."""
     settings = abi.STRUCTS[f"ajar_{kind}"]()
     getattr(library, f"ajar_{kind}_init")(c.byref(settings))
+    if not isinstance(values, dict):
+        raise BakeError(abi.ERROR_ARGUMENT, f"{values!r} is no object", "settings")
+    kinds = dict(settings._fields_)
     for key, value in values.items():
-        if key == "struct_size" or not hasattr(settings, key):
+        if key == "struct_size" or key not in kinds:
             raise BakeError(abi.ERROR_ARGUMENT, f"unknown setting {key}", "settings")
         try:
-            setattr(settings, key, _number(key, value))
-        except (TypeError, ValueError) as error:
+            number = _number(key, value)
+            # ctypes would take the low bits of a larger number.
+            if kinds[key] is c.c_uint32 and not 0 <= number < 1 << 32:
+                raise ValueError(f"{number} is not in 0..{(1 << 32) - 1}")
+            setattr(settings, key, number)
+        except (TypeError, ValueError, OverflowError) as error:
             raise BakeError(abi.ERROR_ARGUMENT, f"{key}: {error}", "settings") from error
     return settings
 

@@ -36,8 +36,9 @@ class Reader:
             raise SnapshotError(f"cannot read {name} in {directory}: {error}") from error
         self._anchor = ctypes.c_char.from_buffer(self._map)
         self._base = ctypes.addressof(self._anchor)
-        if self.data.get("version") != VERSION:
-            raise SnapshotError(f"{name}.json has version {self.data.get('version')}, not {VERSION}")
+        version = self.data.get("version") if isinstance(self.data, dict) else None
+        if version != VERSION:
+            raise SnapshotError(f"{name}.json has version {version}, not {VERSION}")
 
     def check(self, reference, kind, count=None):
         """Byte offset of an array after checking its type, bounds and (if given) scalar count."""
