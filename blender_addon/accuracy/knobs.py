@@ -101,7 +101,7 @@ def _rays(quick):
 
 
 def _thresholds(base, quick):
-    values = (0.0, 0.05) if quick else (0.0, 0.003, 0.03, 0.1)
+    values = (0.001, 0.05) if quick else (0.001, 0.003, 0.03, 0.1)
     return [Trial("keep threshold", v, {"term_threshold": v}) for v in values if v != base["term_threshold"]]
 
 
