@@ -156,6 +156,17 @@ ENGINE_FIELDS = (
             ("RGB", "RGB", "Colour of each light set at every texel, at three times the size"),
         ),
     ),
+    Field(
+        "memory_limit",
+        "float",
+        0.0,
+        0.0,
+        1000000.0,
+        "GB",
+        "Memory that the light of sets, doors and toggles may take; 0: what is free. A bake that needs more ends "
+        "with an error before the machine swaps",
+        "Memory limit",
+    ),
 )
 
 # Fields of ajar_layout_settings, in the order of the struct.

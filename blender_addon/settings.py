@@ -19,6 +19,7 @@ _FROM_SCENE = (
     "combinations",
     "term_threshold",
     "light_patches",
+    "memory_limit",
 )
 
 

@@ -180,6 +180,7 @@ class Settings(c.Structure):
         ("check_points", u32),
         ("light_patches", u32),
         ("trial", u32),
+        ("memory_limit", f32),
     ]
 
 

@@ -163,6 +163,7 @@ class AJAR_PT_render_more(Properties, Panel):
             "combinations",
             "term_threshold",
             "light_patches",
+            "memory_limit",
             "seed",
             "threads",
         ):

@@ -64,6 +64,26 @@ TEST(Report, StatesTheErrorOfLightInSetsToo) {
     EXPECT_NEAR(told / spread(light[0], light[1]), 1.0, 0.25);
 }
 
+TEST(Memory, ALimitThatElementsNeedMoreOfEndsTheBakeWithARemedy) {
+    kit::Scene plain, elements;
+    build_room(plain);
+    build_room(elements, true);
+    ajar_settings s = kit::settings(2, 64);
+    s.memory_limit = 1e-4f; // 100 kB
+    EXPECT_NO_THROW(kit::Bake(plain, s)) << "no element takes any";
+    ajar_job job = nullptr;
+    ASSERT_EQ(ajar_job_start(elements.handle(), &s, &job), AJAR_OK);
+    EXPECT_EQ(ajar_job_wait(job, -1.0), AJAR_ERROR_MEMORY);
+    char text[256], culprit[64];
+    ASSERT_EQ(ajar_job_error(job, text, sizeof text, culprit, sizeof culprit), AJAR_OK);
+    EXPECT_NE(std::string(text).find("keep threshold"), std::string::npos) << text;
+    ajar_job_release(&job);
+    s.memory_limit = 1.0f;
+    EXPECT_NO_THROW(kit::Bake(elements, s));
+    s.memory_limit = -1.0f;
+    EXPECT_EQ(ajar_job_start(elements.handle(), &s, &job), AJAR_ERROR_ARGUMENT);
+}
+
 TEST(Report, MemoryIsOnlyForWhatTheSceneCallsFor) {
     kit::Scene plain, elements;
     build_room(plain);

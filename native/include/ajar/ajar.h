@@ -281,6 +281,8 @@ typedef struct ajar_settings {
     uint32_t light_patches; /* AJAR_LIGHT_PATCHES_* */
     uint32_t trial;         /* 1: no bake and no light, but a pilot of seconds; its report says under "texels" and
                                "predicted_seconds" how much work the other settings are, on this machine */
+    float memory_limit;     /* GB that the light of sets, doors and toggles may take; 0 = what is free. A bake that
+                               needs more ends with AJAR_ERROR_MEMORY before the machine swaps */
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

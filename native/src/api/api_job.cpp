@@ -26,6 +26,7 @@ ajar_settings checked_settings(const ajar_settings* settings) {
     if (s.trial > 1) fail("trial must be 0 or 1");
     if (!(s.term_threshold >= 0.0f) || s.term_threshold > 1.0f) fail("term_threshold must lie in 0..1");
     if (!(s.door_rays >= 0.0f) || s.door_rays > 1.0f) fail("door_rays must lie in 0..1");
+    if (!(s.memory_limit >= 0.0f) || s.memory_limit > 1e6f) fail("memory_limit must lie in 0..1000000 GB");
     if (s.check_points > (1u << 20)) fail("check_points must be 1048576 at most");
     if (s.threads > 1024) fail("threads must be 1024 at most");
     return s;

@@ -24,6 +24,7 @@ json settings_json(const ajar_settings& s) {
             {"term_threshold", s.term_threshold},
             {"door_rays", s.door_rays},
             {"check_points", s.check_points},
+            {"memory_limit", s.memory_limit},
             {"light_patches", s.light_patches},
             {"seed", s.seed},
             {"threads", s.threads},

@@ -7,6 +7,7 @@ namespace ajar {
 
 namespace {
 
+constexpr uint64_t kRowCopies = 3;     ///< of a pass's rows: per tile, joined, added to the source
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
 constexpr float kPruneShare = 4.0f; ///< of a term's threshold: light that is dimmer is reflected only by chance
@@ -24,7 +25,8 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       pool_(pool),
       progress_(progress),
       seconds_to_store_(seconds_to_store),
-      limits_{order_of(settings.combinations)} {
+      limits_{order_of(settings.combinations)},
+      budget_(settings.memory_limit, "light sets, doors and toggles", scene.scene.name) {
     for (uint32_t e = 0; e < s_.scene.elements.size(); ++e)
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
 }
@@ -116,6 +118,7 @@ void TermBaker::direct_source() {
             rays += gather_tile(s_, tile, o, nullptr, table_, limits_, gather);
         }
         tiles[i] = tile_rows(tile, gather, &direct);
+        budget_.take(kRowCopies * tiles[i].entries.size() * sizeof(TermColor));
         progress_.add_rays(rays);
     });
     take(tiles);
@@ -123,6 +126,7 @@ void TermBaker::direct_source() {
 
 void TermBaker::bounce(uint32_t index) {
     radiance_ = radiance_rows(current_, s_.receivers, s_.scene.texel_count());
+    budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
     pool_.for_each(tiles.size(), progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
@@ -136,6 +140,7 @@ void TermBaker::bounce(uint32_t index) {
         o.aims = aims.empty() ? nullptr : &aims;
         progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
         tiles[i] = tile_rows(tile, sums, nullptr);
+        budget_.take(kRowCopies * tiles[i].entries.size() * sizeof(TermColor));
     });
     take(tiles);
 }

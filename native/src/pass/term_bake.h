@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "base/memory.h"
 #include "pass/bake.h"
 #include "pass/term_merge.h"
 
@@ -70,6 +71,7 @@ private:
     std::unique_ptr<EmitterSet> final_emitters_;
     std::vector<AimBox> doors_;
     double pilot_pace_ = 0.0; ///< seconds per ray
+    MemoryBudget budget_;     ///< of the pass in hand
 };
 
 } // namespace ajar

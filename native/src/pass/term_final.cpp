@@ -6,6 +6,8 @@
 
 namespace ajar {
 
+constexpr uint64_t kLightCopies = 3; ///< of what is stored: per tile, joined, in pages
+
 /// Rows of one tile of the final gather.
 struct FinalTile {
     std::vector<Term> terms;
@@ -119,8 +121,10 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     const auto finish_tile = [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
         store_tile(tile, plan[i], estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal)), tiles[i]);
+        budget_.take(kLightCopies * tiles[i].light.size() * sizeof(TermLight));
         return tiles[i].light.size();
     };
+    budget_.reset();
     if (settings_.trial != 0) return gather_some(s_.receivers, pool_, progress_, finish_tile, result_.trial);
     if (settings_.time_limit > 0.0f)
         gather_in_rounds(plan, finish_tile);
