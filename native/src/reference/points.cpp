@@ -123,16 +123,20 @@ Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) con
     return point.place;
 }
 
+PointChooser::View PointChooser::view_from(const Place& p) const {
+    const Frame f = frame_from_normal(world_.scene.geometric_normal(p.triangle));
+    View view{f, world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z), state_};
+    view.state.own = world_.scene.presence(p.triangle);
+    return view;
+}
+
 /// Inside a thing that stands there: most ways lead to the inside of a solid, or all of them to backs. One
 /// way is not enough, as it may end where that thing touches another.
 bool PointChooser::is_buried(const Place& p) const {
-    const Frame f = frame_from_normal(world_.scene.geometric_normal(p.triangle));
-    const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z);
-    SceneState state = state_;
-    state.own = world_.scene.presence(p.triangle);
+    const View view = view_from(p);
     int backs = 0, inside = 0;
     for (const Vec3& w : {Vec3(0.1f, 0.2f, 0.97f), Vec3(0.6f, -0.5f, 0.62f), Vec3(-0.7f, 0.3f, 0.65f)}) {
-        const Hit hit = world_.meet({origin, f.to_world(glm::normalize(w))}, state);
+        const Hit hit = world_.meet(view.along(glm::normalize(w)), view.state);
         if (hit.triangle == kMiss || !hit.back) continue;
         ++backs;
         inside += world_.is_inside(hit);
@@ -142,27 +146,23 @@ bool PointChooser::is_buried(const Place& p) const {
 
 /// Where something else sticks into the solid around a place, single rays end on its front; most do not.
 bool PointChooser::is_enclosed(const Place& p) const {
-    const Frame f = frame_from_normal(world_.scene.geometric_normal(p.triangle));
-    const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), f.z);
-    SceneState state = state_;
-    state.own = world_.scene.presence(p.triangle);
+    const View view = view_from(p);
     const float near = kNearBack * texel_edge(world_.scene, p.triangle);
     int inside = 0;
     for (int i = 0; i < kEnclosureRays; ++i) { // cosine distributed, on a spiral
         const float up = (static_cast<float>(i) + 0.5f) / kEnclosureRays, r = std::sqrt(1.0f - up);
         const float angle = 2.39996f * static_cast<float>(i);
         const Vec3 w(r * std::cos(angle), r * std::sin(angle), std::sqrt(up));
-        const Hit hit = world_.meet({origin, f.to_world(w)}, state);
+        const Hit hit = world_.meet(view.along(w), view.state);
         inside += hit.triangle != kMiss && (world_.is_inside(hit) || (hit.back && hit.t < near));
     }
     return 2 * inside >= kEnclosureRays;
 }
 
 bool PointChooser::is_covered(const Place& p) const {
-    const Vec3 n = world_.scene.geometric_normal(p.triangle);
-    const Vec3 origin = world_.tracer.offset(world_.scene.position(p.triangle, p.u, p.v), n);
-    const Vec3 up = n * (kCoverHeight * texel_edge(world_.scene, p.triangle));
-    return world_.tracer.intersect({origin, up, 0.0f, 1.0f}, kMaskGather).triangle != kMiss;
+    Ray up = view_from(p).along({0, 0, 1});
+    up.tfar = kCoverHeight * texel_edge(world_.scene, p.triangle);
+    return world_.tracer.intersect(up, kMaskGather).triangle != kMiss;
 }
 
 bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {

@@ -35,6 +35,15 @@ public:
     bool is_covered(const Place& place) const;
 
 private:
+    /// What can be seen from a place.
+    struct View {
+        Frame frame;
+        Vec3 origin;
+        SceneState state;
+        /// The ray in a direction about the surface's normal.
+        Ray along(const Vec3& w) const { return {origin, frame.to_world(w)}; }
+    };
+    View view_from(const Place& place) const;
     bool draw(ReferencePoint& point, Pcg& random) const;
     bool is_parted(const ReferencePoint& point, uint32_t draw) const;
     void find_neighbours(std::vector<ReferencePoint>& points, const std::vector<uint32_t>& numbers) const;
