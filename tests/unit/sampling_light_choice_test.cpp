@@ -89,6 +89,34 @@ TEST(LightChoice, EveryLightThatReachesAReceiverHasAChance) {
                 << e;
 }
 
+/// A tile whose receivers lie in two rooms: most near many strong lamps, a few near one weak lamp.
+TEST(LightChoice, AWeakLampHasItsShareWhereItIsTheNearest) {
+    SnapshotKit kit;
+    const uint32_t grey = kit.material(Vec3(0.5f));
+    kit.object(parallelogram({-10, -10, 0}, {120, 0, 0}, {0, 20, 0}), grey);
+    kit.object(parallelogram({50, -10, 0.01f}, {0, 20, 0}, {0, 0, 6}), grey);
+    for (int i = 0; i < 40; ++i) kit.light(kit.lamp(AJAR_LIGHT_POINT, Vec3(float(i % 8), float(i / 8), 2.5f), 1000.0f));
+    kit.light(kit.lamp(AJAR_LIGHT_POINT, Vec3(100.0f, 0.0f, 1.0f), 2.0f));
+    const Snapshot& scene = kit.commit();
+    ThreadPool pool{1};
+    Progress progress;
+    const EmitterSet emitters(scene, pool, progress);
+    const Tracer tracer(scene);
+    LightmapReceivers receivers;
+    constexpr uint32_t kCount = 256, kFew = 12;
+    for (uint32_t r = 0; r < kCount; ++r) {
+        receivers.texel.push_back(r);
+        receivers.frame.push_back(Frame{});
+        const double x = r < kCount - kFew ? 8.0 * r / kCount : 100.0 + 0.05 * r / kCount;
+        receivers.positions.push_back(Vec3(DVec3(x, 1.0, 0.001) - scene.origin));
+    }
+    LightChoice choice(emitters, LightRoles::stored, emitters.of_set(kNoElement));
+    choice.begin(tracer, receivers, {0, kCount}, 5);
+    const uint32_t weak = 40;
+    EXPECT_LT(choice.chance(0, weak), 0.05f);
+    for (uint32_t r = kCount - kFew; r < kCount; ++r) EXPECT_GT(choice.chance(r, weak), 0.1f) << r;
+}
+
 TEST(LightChoice, PrimaryLampsAreNotStored) {
     Hall hall(60);
     ASSERT_NE(hall.primary, EmitterSet::kNone);
