@@ -14,7 +14,7 @@ constexpr uint32_t kProbedPairs = 8192;                ///< of receivers and emi
 constexpr uint32_t kVisibilityRays = 16;               ///< per candidate and tile
 constexpr float kVisibilityFloor = 0.05f;
 constexpr float kUnseenShare = 0.25f; ///< of what the seen weigh that lamps seen by no ray may weigh together
-constexpr float kTileShare = 0.01f;   ///< of a receiver's weight that is spread as in its tile
+constexpr float kTileShare = 0.01f;   ///< of the tile's weight that each receiver keeps
 
 } // namespace
 
@@ -54,13 +54,7 @@ void LightChoice::weigh_candidates(const LightmapReceivers& receivers, const Til
         total += c.weight = c.running.back() / static_cast<float>(probes);
     }
     // Probes can miss a lamp that only some receivers see; it keeps a small chance.
-    const auto count = static_cast<float>(candidates_.size());
-    float shares = 0.0f;
-    for (const Candidate& c : candidates_) shares += c.share;
-    for (Candidate& c : candidates_) {
-        c.weight += 1e-3f * total / count + 1e-20f;
-        c.share = shares > 0.0f ? (c.share / shares + 1e-3f / count) / 1.001f : 1.0f / count;
-    }
+    for (Candidate& c : candidates_) c.weight += 1e-3f * total / static_cast<float>(candidates_.size()) + 1e-20f;
 }
 
 /// A receiver of the tile, where a candidate matters most likely one near a probe that it matters to.
@@ -145,20 +139,18 @@ uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& recei
     const uint64_t rays = learn_visibility(tracer, receivers, tile, seed);
     rest_running_.clear();
     float rest = 0.0f;
-    for (size_t i = fine_; i < candidates_.size(); ++i) rest_running_.push_back(rest += candidates_[i].share);
-    std::vector<float> here(fine_);
+    for (size_t i = fine_; i < candidates_.size(); ++i) rest_running_.push_back(rest += candidates_[i].weight);
     running_.resize(size_t{tile.count} * (fine_ + 1));
     for (uint32_t local = 0; local < tile.count; ++local) {
         const uint32_t r = tile.first + local;
         float* row = &running_[size_t{local} * (fine_ + 1)];
-        float all = 0.0f, sum = 0.0f;
-        for (uint32_t c = 0; c < fine_; ++c)
-            all += here[c] =
+        float sum = 0.0f;
+        for (uint32_t c = 0; c < fine_; ++c) {
+            const float here =
                 emitters_.importance(candidates_[c].emitter, receivers.origins(r)[0], receivers.frame[r].z);
-        if (!(all > 0.0f)) all = 1.0f;
-        for (uint32_t c = 0; c < fine_; ++c)
-            row[c] = sum += (here[c] + kTileShare * all * candidates_[c].share) * visibility_[c];
-        row[fine_] = sum + all * rest;
+            row[c] = sum += (here + kTileShare * candidates_[c].weight) * visibility_[c];
+        }
+        row[fine_] = sum + rest;
     }
     return rays;
 }
@@ -175,13 +167,12 @@ uint32_t LightChoice::pick(uint32_t local, float& u, float& chance) const {
         chance = weight / total;
         return candidates_[slot].emitter;
     }
-    target *= rest_running_.back() / weight;
     const auto i = static_cast<size_t>(std::min<ptrdiff_t>(
         std::upper_bound(rest_running_.begin(), rest_running_.end(), target) - rest_running_.begin(),
         static_cast<ptrdiff_t>(rest_running_.size()) - 1));
     const float first = i > 0 ? rest_running_[i - 1] : 0.0f, share = rest_running_[i] - first;
     u = std::clamp((target - first) / std::max(share, 1e-30f), 0.0f, 0x1.fffffep-1f);
-    chance = rest_chance(row, i);
+    chance = share / total;
     return candidates_[fine_ + i].emitter;
 }
 
@@ -190,13 +181,8 @@ float LightChoice::chance(uint32_t local, uint32_t emitter) const {
     const uint32_t slot = slot_of_[emitter];
     const float* row = this->row(local);
     if (slot < fine_) return (row[slot] - (slot > 0 ? row[slot - 1] : 0.0f)) / row[fine_];
-    return rest_chance(row, slot - fine_);
-}
-
-/// Chance of a candidate that is not weighed per receiver, number i of them.
-float LightChoice::rest_chance(const float* row, size_t i) const {
-    const float rest = row[fine_] - (fine_ > 0 ? row[fine_ - 1] : 0.0f);
-    return (rest_running_[i] - (i > 0 ? rest_running_[i - 1] : 0.0f)) / rest_running_.back() * rest / row[fine_];
+    const size_t i = slot - fine_;
+    return (rest_running_[i] - (i > 0 ? rest_running_[i - 1] : 0.0f)) / row[fine_];
 }
 
 } // namespace ajar

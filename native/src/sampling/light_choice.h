@@ -39,7 +39,7 @@ private:
     struct Candidate {
         uint32_t emitter;
         float weight;               ///< mean importance over the tile
-        float share;                ///< of all importance at a receiver, mean over the tile; 1 together
+        float share;                ///< of all importance at a receiver, mean over the tile
         std::vector<float> running; ///< [probes] running importance: where in the tile it matters
     };
     void find_candidates(const LightmapReceivers& receivers, const Tile& tile);
@@ -56,8 +56,6 @@ private:
                               uint32_t seed);
     void find_variance(const std::vector<Seen>& seen);
 
-    float rest_chance(const float* row, size_t i) const;
-
     const float* row(uint32_t local) const { return &running_[size_t{base_ + local} * (fine_ + 1)]; }
 
     const EmitterSet& emitters_;
@@ -69,7 +67,7 @@ private:
     uint32_t fine_ = 0, base_ = 0;
     std::vector<float> visibility_;   ///< [fine_]
     std::vector<float> running_;      ///< [tile.count][fine_ + 1] running weights, last is the rest
-    std::vector<float> rest_running_; ///< shares of candidates from fine_ on
+    std::vector<float> rest_running_; ///< candidates from fine_ on
     std::vector<uint32_t> slot_of_;   ///< per emitter: candidate index or kNone
 };
 
