@@ -236,6 +236,7 @@ SCENE_FIELDS = (
     _BY_NAME["combinations"],
     _BY_NAME["term_threshold"],
     _BY_NAME["light_patches"],
+    _BY_NAME["memory_limit"],
 )
 
 OBJECT_FIELDS = (
