@@ -50,7 +50,7 @@ def _rows(shape):
     return np.ix_(steps[0][::-1], steps[1])
 
 
-def _dots(page_shape, backdrop, uv, errors):
+def _dots(backdrop, uv, errors):
     """Errors at points as coloured dots over the dimmed page."""
     picture = (backdrop * 0.35).astype(np.uint8)
     height, width = picture.shape[:2]
@@ -71,7 +71,7 @@ def of_pages(maps, pages, uv, errors):
         backdrop = greys(light[window], white)
         noise = maps.stderr[p] / (light + 0.01 * white)
         lit = np.where((maps.validity[p] > 0)[window][..., None], colours(noise[window]), 0).astype(np.uint8)
-        dots = _dots(light.shape, backdrop, uv[here], errors[here])
+        dots = _dots(backdrop, uv[here], errors[here])
         name = f"page {p}" if len(maps.light) > 1 else "the page"
         out += [
             (f"light of {name}", backdrop),

@@ -172,9 +172,9 @@ class Comparison:
         return Shortcut("one bounce behind doors", few, all_of_it, few.error.bias, "without")
 
     def _leaf(self):
-        folder = still.without_open_poses(self._scene.folder)
-        if folder is None:
+        if not any(i.get("open_pose") for i in self._scene.data["instances"]):
             return None
+        folder = still.without_open_poses(self._scene.folder)
         maps = self._bake(bakes.SceneFile(folder), {}, [bakes.product_of(self._open)])
         truths = self._truths[-1:]
         return self._shortcut(

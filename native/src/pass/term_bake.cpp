@@ -35,7 +35,7 @@ bool TermBaker::gathers() const {
     return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
 }
 
-TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const {
+TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) {
     TileRows rows;
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
     const TermIndex gathered(gather, rows.terms), sampled(direct != nullptr ? *direct : gather, rows.terms);
@@ -62,6 +62,7 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
         }
         rows.count.push_back(static_cast<uint32_t>(rows.entries.size() - before));
     }
+    budget_.take(kRowCopies * rows.entries.size() * sizeof(TermColor));
     return rows;
 }
 
@@ -118,7 +119,6 @@ void TermBaker::direct_source() {
             rays += gather_tile(s_, tile, o, nullptr, table_, limits_, gather);
         }
         tiles[i] = tile_rows(tile, gather, &direct);
-        budget_.take(kRowCopies * tiles[i].entries.size() * sizeof(TermColor));
         progress_.add_rays(rays);
     });
     take(tiles);
@@ -140,7 +140,6 @@ void TermBaker::bounce(uint32_t index) {
         o.aims = aims.empty() ? nullptr : &aims;
         progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
         tiles[i] = tile_rows(tile, sums, nullptr);
-        budget_.take(kRowCopies * tiles[i].entries.size() * sizeof(TermColor));
     });
     take(tiles);
 }

@@ -25,7 +25,7 @@ private:
     void direct_source();
     void bounce(uint32_t index);
     /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
-    TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const;
+    TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct);
     void take(std::vector<TileRows>& tiles);
     EmitterSet find_bright_texels();
     void find_thresholds();
