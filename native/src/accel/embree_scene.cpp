@@ -23,6 +23,7 @@ static_assert(offsetof(RayPacket, nx) == offsetof(RTCRayHit8, hit) + offsetof(RT
 static_assert(offsetof(RayPacket, triangle) == offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, primID));
 
 constexpr int kMaxLayers = 256; ///< transmissive surfaces one shadow ray may cross
+constexpr size_t kPadding = 16; ///< bytes that the ray tracer may read behind the last vertex
 
 void call_intersect8(const int32_t* valid, RTCScene scene, RTCRayHit8* rays) {
 #ifdef AJAR_EMBREE4
@@ -79,25 +80,25 @@ constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENT
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
-/// Where all_hits leaves what it meets. The tracer's own context must come first.
+/// Where all_switches leaves what it meets. The tracer's own context must come first.
 struct Collector {
 #ifdef AJAR_EMBREE4
     RTCRayQueryContext context;
 #else
     RTCIntersectContext context;
 #endif
-    const std::vector<uint32_t>* first;
-    std::vector<Hit>* out;
+    const std::vector<uint32_t>& first;
+    std::vector<Hit>& out;
 };
 
 /// Notes the hit and turns it down, so that the ray goes on.
 void collect(const RTCFilterFunctionNArguments* a) {
     const auto* c = reinterpret_cast<const Collector*>(a->context);
-    const uint32_t triangle = RTCHitN_primID(a->hit, a->N, 0) + (*c->first)[RTCHitN_geomID(a->hit, a->N, 0)];
+    const uint32_t triangle = RTCHitN_primID(a->hit, a->N, 0) + c->first[RTCHitN_geomID(a->hit, a->N, 0)];
     const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) +
                        RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
                        RTCRayN_dir_z(a->ray, a->N, 0) * RTCHitN_Ng_z(a->hit, a->N, 0);
-    c->out->push_back(
+    c->out.push_back(
         {triangle, RTCHitN_u(a->hit, a->N, 0), RTCHitN_v(a->hit, a->N, 0), RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
     a->valid[0] = 0;
 }
@@ -131,46 +132,81 @@ void RayPacket::prepare(uint32_t ray_mask) {
 }
 
 struct Tracer::Impl {
+    /// What is always there, or what is switchable: few rays meet the latter, in a tree of its own they cost little.
+    struct Part {
+        RTCScene scene = nullptr;
+        std::vector<uint32_t> first; ///< first triangle of each geometry
+
+        bool empty() const { return first.empty(); }
+        uint32_t triangle(uint32_t geometry, uint32_t primitive) const { return first[geometry] + primitive; }
+    };
     RTCDevice device = nullptr;
-    RTCScene scene = nullptr;
-    std::vector<uint32_t> first; ///< first triangle of each geometry
+    RTCBuffer vertices = nullptr; ///< one copy for all geometries
+    Part fixed, switches;
 
     ~Impl() {
-        if (scene != nullptr) rtcReleaseScene(scene);
+        for (const Part* part : {&fixed, &switches})
+            if (part->scene != nullptr) rtcReleaseScene(part->scene);
+        if (vertices != nullptr) rtcReleaseBuffer(vertices);
         if (device != nullptr) rtcReleaseDevice(device);
     }
 
+    void begin(const Snapshot& s) {
+        device = rtcNewDevice(nullptr);
+        if (device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
+        fixed.scene = new_scene(RTC_SCENE_FLAG_ROBUST);
+        switches.scene = new_scene(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag));
+        const size_t bytes = s.positions.size() * sizeof(Vec3);
+        vertices = rtcNewBuffer(device, bytes + kPadding);
+        if (vertices == nullptr) no_memory();
+        std::memcpy(rtcGetBufferData(vertices), s.positions.data(), bytes);
+    }
+
+    RTCScene new_scene(RTCSceneFlags flags) const {
+        RTCScene scene = rtcNewScene(device);
+        rtcSetSceneFlags(scene, flags);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+        return scene;
+    }
+
+    [[noreturn]] static void no_memory() { throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer"); }
+
+    /// Triangles begin to end, of one mask.
     void add_group(const Snapshot& s, uint32_t begin, uint32_t end) {
+        const uint32_t mask = s.ray_mask(s.triangles[begin]);
+        Part& part = (mask & kMaskSwitch) != 0 ? switches : fixed;
         RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* vertices =
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), s.positions.size());
+        rtcSetGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(Vec3),
+                             s.positions.size());
         auto* indices = static_cast<uint32_t*>(
             rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), end - begin));
-        if (vertices == nullptr || indices == nullptr)
-            throw Error(AJAR_ERROR_MEMORY, "not enough memory for the ray tracer");
-        std::memcpy(vertices, s.positions.data(), s.positions.size() * sizeof(Vec3));
+        if (indices == nullptr) no_memory();
         for (uint32_t t = begin; t < end; ++t)
             std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
 #ifdef AJAR_EMBREE4
-        rtcSetGeometryEnableFilterFunctionFromArguments(g, true);
+        rtcSetGeometryEnableFilterFunctionFromArguments(g, (mask & kMaskSwitch) != 0);
 #endif
-        rtcSetGeometryMask(g, s.ray_mask(s.triangles[begin]));
+        rtcSetGeometryMask(g, mask);
         rtcCommitGeometry(g);
-        rtcAttachGeometry(scene, g);
+        rtcAttachGeometry(part.scene, g);
         rtcReleaseGeometry(g);
-        first.push_back(begin);
+        part.first.push_back(begin);
+    }
+
+    /// Nearest hit of one part; a miss leaves out as it is.
+    void intersect(const Part& part, const Snapshot& s, const Ray& ray, uint32_t mask, Hit& out) const {
+        RTCRayHit q = make_ray(ray, mask);
+        call_intersect1(part.scene, &q);
+        if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+        const uint32_t triangle = part.triangle(q.hit.geomID, q.hit.primID);
+        const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
+        out = {triangle, q.hit.u, q.hit.v, q.ray.tfar, (side > 0.0f) != s.triangles[triangle].mirrored};
     }
 };
 
 Tracer::Tracer(const Snapshot& s)
     : scene_(s), impl_(std::make_unique<Impl>()), floor_(std::max(s.diagonal(), 1e-6f) * 1e-3f) {
-    impl_->device = rtcNewDevice(nullptr);
-    if (impl_->device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
-    impl_->scene = rtcNewScene(impl_->device);
-    // Only all_hits needs the filter, and only switchable surfaces need all_hits.
-    rtcSetSceneFlags(impl_->scene, s.has_switches() ? static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag)
-                                                    : RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+    impl_->begin(s);
     const auto count = static_cast<uint32_t>(s.triangles.size());
     for (uint32_t begin = 0, end; begin < count; begin = end) {
         for (end = begin + 1; end < count && s.ray_mask(s.triangles[end]) == s.ray_mask(s.triangles[begin]);) ++end;
@@ -179,7 +215,10 @@ Tracer::Tracer(const Snapshot& s)
     }
     // One thread: a parallel build may order coincident triangles differently each time, and the
     // bake promises the same bytes for any number of threads.
-    tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene); });
+    tbb::task_arena(1).execute([&] {
+        rtcCommitScene(impl_->fixed.scene);
+        rtcCommitScene(impl_->switches.scene);
+    });
     if (rtcGetDeviceError(impl_->device) != RTC_ERROR_NONE)
         throw Error(AJAR_ERROR_MEMORY, "the ray tracer could not be built");
 }
@@ -187,30 +226,48 @@ Tracer::Tracer(const Snapshot& s)
 Tracer::~Tracer() = default;
 
 void Tracer::intersect(const int32_t* valid, RayPacket& rays) const {
-    call_intersect8(valid, impl_->scene, reinterpret_cast<RTCRayHit8*>(&rays));
+    const Impl::Part& part = impl_->fixed;
+    call_intersect8(valid, part.scene, reinterpret_cast<RTCRayHit8*>(&rays));
     for (uint32_t i = 0; i < kLanes; ++i)
         rays.triangle[i] =
-            rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : rays.triangle[i] + impl_->first[rays.group[i]];
+            rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : part.triangle(rays.group[i], rays.triangle[i]);
 }
 
 void Tracer::occluded(const int32_t* valid, RayPacket& rays) const {
-    call_occluded8(valid, impl_->scene, reinterpret_cast<RTCRay8*>(&rays));
+    call_occluded8(valid, impl_->fixed.scene, reinterpret_cast<RTCRay8*>(&rays));
+}
+
+uint32_t Tracer::crossing(const int32_t* valid, const RayPacket& rays, uint32_t mask) const {
+    if (impl_->switches.empty()) return 0;
+    alignas(32) int32_t wanted[kLanes];
+    alignas(32) RTCRay8 copy;
+    std::memcpy(&copy, &rays, sizeof(copy));
+    for (uint32_t i = 0; i < kLanes; ++i) {
+        wanted[i] = valid[i] != 0 && rays.tfar[i] >= 0.0f ? -1 : 0;
+        copy.mask[i] = mask;
+    }
+    call_occluded8(wanted, impl_->switches.scene, &copy);
+    uint32_t lanes = 0;
+    for (uint32_t i = 0; i < kLanes; ++i) lanes |= uint32_t{wanted[i] != 0 && copy.tfar[i] < 0.0f} << i;
+    return lanes;
 }
 
 Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
-    RTCRayHit q = make_ray(ray, mask);
-    call_intersect1(impl_->scene, &q);
-    if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const uint32_t triangle = q.hit.primID + impl_->first[q.hit.geomID];
-    const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
-    return {triangle, q.hit.u, q.hit.v, q.ray.tfar, (side > 0.0f) != scene_.triangles[triangle].mirrored};
+    Hit hit;
+    if ((mask & ~uint32_t{kMaskSwitch}) != 0) impl_->intersect(impl_->fixed, scene_, ray, mask, hit);
+    if ((mask & kMaskSwitch) == 0 || impl_->switches.empty()) return hit;
+    Ray before = ray;
+    if (hit.triangle != kMiss) before.tfar = hit.t;
+    impl_->intersect(impl_->switches, scene_, before, mask, hit);
+    return hit;
 }
 
-void Tracer::all_hits(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {
+void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {
     out.clear();
+    if (impl_->switches.empty()) return;
     RTCRayHit q = make_ray(ray, mask);
-    Collector c{{}, &impl_->first, &out};
-    call_collect(impl_->scene, &q, c);
+    Collector c{{}, impl_->switches.first, out};
+    call_collect(impl_->switches.scene, &q, c);
     std::sort(out.begin(), out.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
     out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }),

@@ -19,13 +19,16 @@ public:
     Tracer(const Tracer&) = delete;
     Tracer& operator=(const Tracer&) = delete;
 
-    /// Closest hits of the lanes whose valid entry is -1.
+    /// Closest hits of the lanes whose valid entry is -1, among what is always there.
     void intersect(const int32_t* valid, RayPacket& rays) const;
-    /// Lanes that are blocked by an opaque surface get tfar = -infinity.
+    /// Lanes that are blocked by an opaque surface which is always there get tfar = -infinity.
     void occluded(const int32_t* valid, RayPacket& rays) const;
+    /// Bits of those valid lanes with tfar >= 0 that meet a switchable surface of mask up to tfar.
+    uint32_t crossing(const int32_t* valid, const RayPacket& rays, uint32_t mask) const;
+    /// Nearest surface of mask.
     Hit intersect(const Ray& ray, uint32_t mask) const;
-    /// Every surface of mask along the ray, each once, nearest first; also those in one plane.
-    void all_hits(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const;
+    /// Every switchable surface of mask along the ray, each once, nearest first; also those in one plane.
+    void all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const;
     /// What is left of light along a shadow ray: 0 behind anything opaque, else the product of
     /// the transmittances in between.
     Vec3 transmittance(const Ray& ray) const;

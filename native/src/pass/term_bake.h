@@ -38,8 +38,9 @@ private:
     struct Evenness;
     Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
-    float worth_at(const Ray& ray, const Hit& hit) const;
-    uint64_t aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const;
+    TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
+    float indirect_light(const Tile& tile) const;
+    uint64_t aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
     void final_gather(std::vector<RayPlan>& plan);

@@ -9,6 +9,7 @@ namespace {
 constexpr uint32_t kDarkSamples = 2; ///< per receiver and set, where the source pass found the set dark
 constexpr float kEvenLight = 0.8f;   ///< least over most light of neighbours that lie in no shadow's edge
 constexpr uint32_t kMostAims = 4;    ///< doors that a tile aims rays at
+constexpr float kAimShare = 0.02f;   ///< of a tile's indirect light: doors that bring less are left to chance
 constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's light do not drive its ray counts
 
 } // namespace
@@ -67,31 +68,46 @@ void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
     }
 }
 
-/// Luminance that comes back along a ray, each term over what a texel keeps of it, and emission and sky over
-/// what it keeps of the base. Surfaces without stored light may be bright.
-float TermBaker::worth_at(const Ray& ray, const Hit& hit) const {
-    const auto worth = [&](uint32_t term, float light) { return light / std::max(threshold_[term], 1e-30f); };
-    if (hit.triangle == kMiss) return worth(0, luminance(s_.scene.sky.radiance(ray.direction)));
+/// Luminance that comes back along a ray, and each term of it over what a texel keeps of that term, emission and
+/// sky over what it keeps of the base. Surfaces without stored light may be bright.
+TileAims::Arrival TermBaker::arrival(const Ray& ray, const Hit& hit) const {
+    TileAims::Arrival sum;
+    const auto add = [&](uint32_t term, float light) {
+        sum.light += light, sum.worth += light / std::max(threshold_[term], 1e-30f);
+    };
+    constexpr float kUnknown = std::numeric_limits<float>::infinity();
+    if (hit.triangle == kMiss) {
+        add(0, luminance(s_.scene.sky.radiance(ray.direction)));
+        return sum;
+    }
     const uint8_t flags = s_.surfaces.flags(hit.triangle);
-    if ((flags & SurfaceTable::kUnmapped) != 0) return std::numeric_limits<float>::infinity();
-    float sum = 0.0f;
-    if ((flags & SurfaceTable::kEmits) != 0) sum += worth(0, luminance(s_.scene.emission(hit.triangle, hit.u, hit.v)));
+    if ((flags & SurfaceTable::kUnmapped) != 0) return {kUnknown, kUnknown};
+    if ((flags & SurfaceTable::kEmits) != 0) add(0, luminance(s_.scene.emission(hit.triangle, hit.u, hit.v)));
     const uint32_t texel = s_.surfaces.texel(hit.triangle, hit.u, hit.v);
     if (!hit.back)
         for (const TermColor* e = radiance_.begin(texel); e != radiance_.end(texel); ++e)
-            sum += worth(e->term, std::abs(luminance(e->color)));
+            add(e->term, std::abs(luminance(e->color)));
     return sum;
 }
 
+/// Irradiance that surfaces sent to a tile in the bounces so far, luminance, mean over its receivers.
+float TermBaker::indirect_light(const Tile& tile) const {
+    double sum = 0.0;
+    for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
+        sum += luminance(source_.total(r) - direct_.total(r));
+    return static_cast<float>(std::max(sum, 0.0) / tile.count);
+}
+
 /// Rays into the doors through which light of some account comes to the tile.
-uint64_t TermBaker::aim_at_doors(TileAims& aims, uint32_t samples, uint32_t seed) const {
+uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const {
     const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
     const uint32_t even = (share + 1) & ~1u;
+    const float least = doors_.empty() ? 0.0f : kAimShare * indirect_light(tile);
     uint64_t rays = 0;
     for (const AimBox& door : doors_) {
         if (aims.count() == kMostAims) break;
         rays += aims.add(
-            s_.tracer, door, [&](const Ray& r, const Hit& h) { return worth_at(r, h); }, even, seed);
+            s_.tracer, door, [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least, seed);
     }
     return rays;
 }
@@ -117,7 +133,8 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     uint64_t rays = 0;
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
     TileAims aims(s_.receivers, tile);
-    if (plan.gather != 0) rays += aim_at_doors(aims, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
+    if (plan.gather != 0)
+        rays += aim_at_doors(aims, tile, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
     const TileAims* aimed = aims.empty() ? nullptr : &aims;
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
                           table_, limits_, t.direct);

@@ -40,7 +40,7 @@ bool PathTracer::leaves_by_door(const Walk& walk, const Ray& ray, const Hit& end
     Ray way = ray;
     if (end.triangle != kMiss) way.tfar = end.t * (1.0f - 1e-4f);
     std::vector<Hit> switches;
-    world_.tracer.all_hits(way, kMaskGatherSwitch, switches);
+    world_.tracer.all_switches(way, kMaskGatherSwitch, switches);
     const SceneState closed{closed_, walk.state.draw, walk.state.own};
     return std::any_of(switches.begin(), switches.end(), [&](const Hit& h) {
         const Presence p = world_.scene.presence(h.triangle);

@@ -31,7 +31,7 @@ Hit World::meet(const Ray& ray, const SceneState& state) const {
     thread_local std::vector<Hit> switches;
     Ray before = ray;
     if (fixed.triangle != kMiss) before.tfar = fixed.t;
-    tracer.all_hits(before, kMaskGatherSwitch, switches);
+    tracer.all_switches(before, kMaskGatherSwitch, switches);
     for (const Hit& h : switches)
         if (state.is_there(scene.presence(h.triangle))) return h;
     return fixed;
@@ -41,7 +41,7 @@ Vec3 World::transmittance(const Ray& ray, const SceneState& state) const {
     Vec3 left = tracer.transmittance(ray);
     if (!has_switches_ || !(max_component(left) > 0.0f)) return left;
     thread_local std::vector<Hit> switches;
-    tracer.all_hits(ray, kMaskShadowSwitch, switches);
+    tracer.all_switches(ray, kMaskShadowSwitch, switches);
     for (const Hit& h : switches)
         if (state.is_there(scene.presence(h.triangle))) left *= scene.surface(h.triangle, h.u, h.v).transmittance;
     return left;

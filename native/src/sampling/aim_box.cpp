@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sampling/aim_box.h"
 
-#include "sampling/spherical_rectangle.h"
-
 namespace ajar {
 
 namespace {
@@ -54,21 +52,24 @@ void fit(AimBox& box, const Snapshot& scene) {
 
 } // namespace
 
-std::array<float, 3> AimBox::faces_from(const Vec3& from) const {
+AimBox::View AimBox::view_from(const Vec3& from) const {
     const DVec3 p(from), to = p - center;
-    std::array<float, 3> omega{};
+    View view;
     for (int a = 0; a < 3; ++a)
-        if (std::abs(glm::dot(to, axis[a])) > half[a]) omega[a] = static_cast<float>(face(*this, p, a).solid_angle());
-    return omega;
+        if (std::abs(glm::dot(to, axis[a])) > half[a]) {
+            view.face[a] = face(*this, p, a);
+            view.solid_angle += static_cast<float>(view.face[a].solid_angle());
+        }
+    return view;
 }
 
-Vec3 AimBox::sample(const Vec3& from, const std::array<float, 3>& faces, Vec2 u) const {
-    float target = u.x * (faces[0] + faces[1] + faces[2]);
+Vec3 AimBox::View::sample(Vec2 u) const {
+    double target = double(u.x) * (face[0].solid_angle() + face[1].solid_angle() + face[2].solid_angle());
     int a = 0;
-    while (a < 2 && target >= faces[a]) target -= faces[a++];
-    while (a > 0 && !(faces[a] > 0.0f)) --a;
-    u.x = std::clamp(target / std::max(faces[a], 1e-30f), 0.0f, 0x1.fffffep-1f);
-    return Vec3(glm::normalize(face(*this, DVec3(from), a).sample(u)));
+    while (a < 2 && target >= face[a].solid_angle()) target -= face[a++].solid_angle();
+    while (a > 0 && !(face[a].solid_angle() > 0.0)) --a;
+    u.x = static_cast<float>(std::clamp(target / std::max(face[a].solid_angle(), 1e-30), 0.0, 0x1.fffffep-1));
+    return Vec3(glm::normalize(face[a].sample(u)));
 }
 
 float AimBox::distance(const Vec3& from, const Vec3& direction) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "sampling/spherical_rectangle.h"
 #include "scene/snapshot.h"
 
 namespace ajar {
@@ -14,12 +15,16 @@ struct AimBox {
     std::array<DVec3, 3> axis{DVec3(1, 0, 0), DVec3(0, 1, 0), DVec3(0, 0, 1)}; ///< unit, at right angles
     DVec3 half{0.0};                                                           ///< m, along the axes
 
-    /// Solid angles of the faces that p sees, by axis: at most one per axis, which do not overlap.
-    /// All 0 from inside.
-    std::array<float, 3> faces_from(const Vec3& p) const;
-    /// Unit direction from p to one of those faces, in proportion to their solid angles: density 1 over
-    /// their sum. u in [0,1)^2.
-    Vec3 sample(const Vec3& p, const std::array<float, 3>& faces, Vec2 u) const;
+    /// The box as a point sees it: at most one face per axis, which do not overlap; none from inside.
+    struct View {
+        std::array<SphericalRectangle, 3> face;
+        float solid_angle = 0.0f; ///< sr, of all faces
+
+        /// Unit direction to one of the faces, in proportion to their solid angles: density 1 / solid_angle,
+        /// which must not be 0. u in [0,1)^2.
+        Vec3 sample(Vec2 u) const;
+    };
+    View view_from(const Vec3& p) const;
     /// Distance at which a ray from p enters the box, m; infinite if it misses.
     float distance(const Vec3& p, const Vec3& direction) const;
 };

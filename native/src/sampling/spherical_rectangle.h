@@ -10,6 +10,8 @@ namespace ajar {
 /// rectangles cancel too many digits otherwise.
 class SphericalRectangle {
 public:
+    /// One that is not seen.
+    SphericalRectangle() = default;
     /// corner relative to the point; edges at right angles, of some length; all in metres.
     SphericalRectangle(const DVec3& corner, const DVec3& edge_x, const DVec3& edge_y);
 
@@ -20,8 +22,8 @@ public:
     DVec3 sample(const Vec2& u) const;
 
 private:
-    DVec3 x_, y_, z_; ///< unit axes
-    double z0_, x0_, y0_, x1_, y1_;
+    DVec3 x_{0.0}, y_{0.0}, z_{0.0}; ///< unit axes
+    double z0_ = 0.0, x0_ = 0.0, y0_ = 0.0, x1_ = 0.0, y1_ = 0.0;
     double b0_ = 0.0, b1_ = 0.0, k_ = 0.0, solid_angle_ = 0.0;
 };
 

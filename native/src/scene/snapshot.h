@@ -58,6 +58,7 @@ enum RayMask : uint32_t {
     kMaskShadowTransmissive = 4,
     kMaskShadowSwitch = 8, ///< doors and toggles are groups of their own
     kMaskGatherSwitch = 16,
+    kMaskSwitch = kMaskShadowSwitch | kMaskGatherSwitch,
     kMaskGatherAll = kMaskGather | kMaskGatherSwitch,
     kMaskWall = kMaskShadowOpaque | kMaskShadowSwitch ///< what parts the light of neighbouring texels
 };

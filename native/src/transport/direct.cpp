@@ -24,6 +24,7 @@ struct ShadowPacket {
     EmitterSample sample[kLanes];
     PacketDirections local;
     float book_scale = 1.0f; ///< of what is booked
+    uint32_t crossing = 0;   ///< bits of lanes that meet a switchable surface
     bool arrived = false;    ///< some sample so far was not blocked
     bool moved = false;      ///< samples of positions that switchable solids cover, from where they are moved to
     float scale[kLanes];
@@ -118,7 +119,7 @@ void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint
     if (packet.lit[lane]) return book(through);
     const Ray ray{
         {packet.rays.ox[lane], packet.rays.oy[lane], packet.rays.oz[lane]}, s.direction, 0.0f, shadow_end(g.tracer, s)};
-    through_shadow<Sink>(g.scene, g.tracer, ray, through, book);
+    through_shadow<Sink>(g.scene, g.tracer, ray, through, book, (packet.crossing >> lane & 1) != 0);
 }
 
 template <class Sink>
@@ -144,6 +145,7 @@ void DirectSampler<Sink>::trace(ShadowPacket& packet, uint32_t first, uint32_t s
         rays += packet.valid[lane] != 0;
     }
     g.tracer.occluded(packet.valid, packet.rays);
+    if (Sink::kSwitches) packet.crossing = g.tracer.crossing(packet.valid, packet.rays, kMaskShadowSwitch);
     finish(packet, first, number);
 }
 

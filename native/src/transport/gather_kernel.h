@@ -44,6 +44,9 @@ struct Gatherer {
         uint32_t position[kLanes]; ///< of the receiver's
         uint32_t first, sample;
         bool waits = false;
+        uint32_t crossing = 0; ///< bits of lanes that meet a switchable surface before their hit
+
+        bool crosses(uint32_t lane) const { return Sink::kSwitches && (crossing >> lane & 1) != 0; }
     };
     Flight flights[2];
     uint32_t turn = 0;
@@ -122,8 +125,9 @@ struct Gatherer {
     void trace(uint32_t first, uint32_t sample) {
         Flight& f = flights[turn];
         f.first = first, f.sample = sample, f.waits = true;
-        f.packet.prepare(Sink::kSwitches ? kMaskGatherAll : kMaskGather);
+        f.packet.prepare(kMaskGather);
         g.tracer.intersect(f.valid, f.packet);
+        if (Sink::kSwitches) f.crossing = g.tracer.crossing(f.valid, f.packet, kMaskGatherSwitch);
         fetch(f, std::min(kLanes, tile.count - first));
         turn ^= 1;
         land(flights[turn]);
@@ -150,7 +154,8 @@ struct Gatherer {
         if (!sink.has_texels()) return;
         for (uint32_t lane = 0; lane < count; ++lane) {
             const uint32_t t = f.packet.triangle[lane];
-            if (t == kMiss || (g.surfaces.flags(t) & special) != 0 || is_back(f.packet, lane)) continue;
+            if (t == kMiss || f.crosses(lane) || (g.surfaces.flags(t) & special) != 0 || is_back(f.packet, lane))
+                continue;
             f.texel[lane] = g.surfaces.texel(t, f.packet.u[lane], f.packet.v[lane]);
             sink.fetch(f.texel[lane]);
         }
@@ -171,7 +176,7 @@ struct Gatherer {
                       triangle != kMiss && is_back(packet, lane)};
         const Origin from{local, f.sample, f.local.weight[lane]};
         if (texel != kNoTexel) return first_hit(ray, hit, through, from);
-        walk(ray, hit, through, from, kMaxLayers);
+        walk(ray, hit, through, from, kMaxLayers, f.crosses(lane));
     }
 
     /// The ray of a position that a switchable solid covers, from where it is moved to while the solid is there.
@@ -185,7 +190,7 @@ struct Gatherer {
             if (there.condition.require(moved.presence.element, moved.presence.state)) {
                 const Ray ray{moved.origin, f.packet.direction(lane)};
                 ++rays;
-                walk(ray, g.tracer.intersect(ray, kMaskGatherAll), there, {local, f.sample, f.local.weight[lane]},
+                walk(ray, g.tracer.intersect(ray, kMaskGather), there, {local, f.sample, f.local.weight[lane]},
                      kMaxLayers);
             }
             return through.condition.require(moved.presence.element, !moved.presence.state);
@@ -194,23 +199,21 @@ struct Gatherer {
     }
 
     /// The general case: emission, layers of transmissive and switchable surfaces, back faces.
-    void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers) {
-        while (layers-- > 0) {
+    /// hit: the nearest of what is always there. crosses: switchable surfaces may lie before it.
+    void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers, bool crosses = true) {
+        for (; layers-- > 0; crosses = true) {
             std::vector<Hit> switches;
-            if (Sink::kSwitches && hit.triangle != kMiss &&
-                (g.surfaces.flags(hit.triangle) & SurfaceTable::kSwitch) != 0) {
-                ++rays;
-                hit = g.tracer.intersect(ray, kMaskGather);
+            if (Sink::kSwitches && crosses) {
                 Ray part = ray;
                 if (hit.triangle != kMiss) part.tfar = hit.t;
-                g.tracer.all_hits(part, kMaskGatherSwitch, switches);
+                g.tracer.all_switches(part, kMaskGatherSwitch, switches);
             }
             if (switches.empty() ? !end_segment(ray, hit, through, from, layers)
                                  : !pass_switches(ray, switches, 0, hit, through, from, layers))
                 return;
             ray.tnear = next_tnear(hit.t);
             ++rays;
-            hit = g.tracer.intersect(ray, kMaskGatherAll);
+            hit = g.tracer.intersect(ray, kMaskGather);
         }
     }
 
@@ -239,7 +242,7 @@ struct Gatherer {
                     Ray behind = ray;
                     behind.tnear = next_tnear(end.t);
                     ++rays;
-                    walk(behind, g.tracer.intersect(behind, kMaskGatherAll), there, from, layers);
+                    walk(behind, g.tracer.intersect(behind, kMaskGather), there, from, layers);
                 }
                 if (!through.condition.require(p.element, !p.state)) return false;
             }
@@ -406,7 +409,7 @@ struct Gatherer {
                 std::vector<Hit> switches;
                 Ray part = ray;
                 if (end.triangle != kMiss) part.tfar = end.t;
-                g.tracer.all_hits(part, kMaskGatherSwitch, switches);
+                g.tracer.all_switches(part, kMaskGatherSwitch, switches);
                 if (!path_switches(ray, switches, 0, end, through, seed, depth, layers, cosine)) return;
             } else if (!path_end(ray, end, through, seed, depth, layers, cosine)) {
                 return;

@@ -144,19 +144,19 @@ void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_
 }
 
 /// Follows a shadow ray that fixed opaque surfaces leave free through tinted and switchable ones.
-/// Calls emit(through) for each way in which light gets along it.
+/// Calls emit(through) for each way in which light gets along it. crosses: it may meet switchable ones.
 template <class Sink, class Emit>
 void through_shadow(const Snapshot& scene, const Tracer& tracer, const Ray& ray, typename Sink::Through through,
-                    Emit&& emit) {
+                    Emit&& emit, bool crosses = true) {
     if (tracer.has_transmissive()) through.color *= tracer.tint(ray);
     if (!(max_component(through.color) > 0.0f)) return;
-    if constexpr (Sink::kSwitches) {
-        thread_local std::vector<Hit> hits;
-        tracer.all_hits(ray, kMaskShadowSwitch, hits);
-        through_switches<Sink>(scene, hits, 0, through, emit);
-    } else {
-        emit(through);
-    }
+    if constexpr (Sink::kSwitches)
+        if (crosses) {
+            thread_local std::vector<Hit> hits;
+            tracer.all_switches(ray, kMaskShadowSwitch, hits);
+            return through_switches<Sink>(scene, hits, 0, through, emit);
+        }
+    emit(through);
 }
 
 } // namespace ajar

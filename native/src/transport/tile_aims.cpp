@@ -10,19 +10,17 @@ namespace {
 constexpr uint32_t kProbes = 16;         ///< rays that look for a box
 constexpr float kLargeShare = 1.0f / 16; ///< of the hemisphere's rays: a box that more of them meet needs no aim
 
-float total(const std::array<float, 3>& faces) { return faces[0] + faces[1] + faces[2]; }
-
 } // namespace
 
-TileAims::Found TileAims::probe(const Tracer& tracer, const AimBox& box, const Worth& worth, uint32_t seed) const {
+TileAims::Found TileAims::probe(const Tracer& tracer, const AimBox& box, const Look& look, uint32_t seed) const {
     Found found;
     uint32_t seen = 0, far = 0;
     for (uint32_t i = 0; i < kProbes; ++i) {
         const uint32_t h = hash_combine(hash_combine(seed, box.element), i), local = h % tile_.count;
         const Vec3& p = origin(local, i % receivers_.positions_per_texel);
-        const std::array<float, 3> faces = box.faces_from(p);
-        if (!(total(faces) > 0.0f)) continue;
-        const Vec3 w = box.sample(p, faces, owen_sobol(i, h));
+        const AimBox::View view = box.view_from(p);
+        if (!(view.solid_angle > 0.0f)) continue;
+        const Vec3 w = view.sample(owen_sobol(i, h));
         const float cosine = glm::dot(w, receivers_.frame[tile_.first + local].z);
         if (!(cosine > 0.0f)) continue;
         ++found.rays;
@@ -30,28 +28,31 @@ TileAims::Found TileAims::probe(const Tracer& tracer, const AimBox& box, const W
         const Hit hit = tracer.intersect(ray, kMaskGather);
         if (hit.triangle != kMiss && hit.t < box.distance(p, w) * 0.999f) continue;
         ++seen;
-        far += total(faces) * cosine * kInvPi < kLargeShare;
-        found.worth += total(faces) * cosine * worth(ray, hit) / static_cast<float>(kProbes);
+        far += view.solid_angle * cosine * kInvPi < kLargeShare;
+        const Arrival arrival = look(ray, hit);
+        const float scale = view.solid_angle * cosine / static_cast<float>(kProbes);
+        found.light += scale * arrival.light, found.worth += scale * arrival.worth;
     }
     found.rarely_met = 4 * far >= std::max(seen, 1u);
     return found;
 }
 
-uint64_t TileAims::add(const Tracer& tracer, const AimBox& box, const Worth& worth, uint32_t rays, uint32_t seed) {
+uint64_t TileAims::add(const Tracer& tracer, const AimBox& box, const Look& look, uint32_t rays, float least,
+                       uint32_t seed) {
     if (rays == 0) return 0;
-    const Found found = probe(tracer, box, worth, seed);
-    if (!(found.worth > 1.0f) || !found.rarely_met) return found.rays;
+    const Found found = probe(tracer, box, look, seed);
+    if (!(found.worth > 1.0f) || !(found.light >= least) || !found.rarely_met) return found.rays;
     Aim& aim = aims_.emplace_back(Aim{box, rays, {}});
     for (uint32_t local = 0; local < tile_.count; ++local)
         for (uint32_t position = 0; position < receivers_.positions_per_texel; ++position)
-            aim.faces.push_back(box.faces_from(origin(local, position)));
+            aim.view.push_back(box.view_from(origin(local, position)));
     return found.rays;
 }
 
 float TileAims::density(uint32_t local, uint32_t position, const Vec3& w) const {
     float sum = 0.0f;
     for (const Aim& a : aims_) {
-        const float omega = total(a.faces[size_t{local} * receivers_.positions_per_texel + position]);
+        const float omega = a.view[place(local, position)].solid_angle;
         if (omega > 0.0f && std::isfinite(a.box.distance(origin(local, position), w)))
             sum += static_cast<float>(a.rays) / omega;
     }
@@ -59,10 +60,9 @@ float TileAims::density(uint32_t local, uint32_t position, const Vec3& w) const 
 }
 
 bool TileAims::sample(uint32_t aim, uint32_t local, uint32_t position, const Vec2& u, Vec3& w) const {
-    const Aim& a = aims_[aim];
-    const auto& faces = a.faces[size_t{local} * receivers_.positions_per_texel + position];
-    if (!(total(faces) > 0.0f)) return false;
-    w = a.box.sample(origin(local, position), faces, u);
+    const AimBox::View& view = aims_[aim].view[place(local, position)];
+    if (!(view.solid_angle > 0.0f)) return false;
+    w = view.sample(u);
     return true;
 }
 

@@ -15,12 +15,16 @@ class TileAims {
 public:
     TileAims(const LightmapReceivers& receivers, const Tile& tile) : receivers_(receivers), tile_(tile) {}
 
-    /// Radiance that comes back along a ray that left through a box, over the irradiance that matters.
-    using Worth = std::function<float(const Ray&, const Hit&)>;
+    /// What comes back along a ray that left through a box.
+    struct Arrival {
+        float light = 0.0f; ///< luminance of all terms
+        float worth = 0.0f; ///< radiance over the irradiance that matters, of each term
+    };
+    using Look = std::function<Arrival(const Ray&, const Hit&)>;
     /// Adds a box if rays of the hemisphere rarely meet it and probing rays through it find light that
-    /// brings the tile an irradiance that matters. rays: to aim at it, per receiver. Returns the rays
-    /// traced to find out.
-    uint64_t add(const Tracer& tracer, const AimBox& box, const Worth& worth, uint32_t rays, uint32_t seed);
+    /// brings the tile an irradiance that matters, and at least some. rays: to aim at it, per receiver.
+    /// least: irradiance, as luminance. Returns the rays traced to find out.
+    uint64_t add(const Tracer& tracer, const AimBox& box, const Look& look, uint32_t rays, float least, uint32_t seed);
 
     bool empty() const { return aims_.empty(); }
     uint32_t count() const { return static_cast<uint32_t>(aims_.size()); }
@@ -34,18 +38,22 @@ private:
     struct Aim {
         AimBox box;
         uint32_t rays;
-        std::vector<std::array<float, 3>> faces; ///< [receivers of the tile][positions] solid angles
+        std::vector<AimBox::View> view; ///< [receivers of the tile][positions]
     };
+    size_t place(uint32_t local, uint32_t position) const {
+        return size_t{local} * receivers_.positions_per_texel + position;
+    }
     const Vec3& origin(uint32_t local, uint32_t position) const {
         return receivers_.origins(tile_.first + local)[position];
     }
     /// What the probing rays found of a box.
     struct Found {
         bool rarely_met = false; ///< by rays of the hemisphere, from some of where it is seen
-        float worth = 0.0f;      ///< irradiance through it over what matters, mean over the tile
+        float light = 0.0f;      ///< irradiance through it, luminance, mean over the tile
+        float worth = 0.0f;      ///< the same over what matters
         uint64_t rays = 0;
     };
-    Found probe(const Tracer& tracer, const AimBox& box, const Worth& worth, uint32_t seed) const;
+    Found probe(const Tracer& tracer, const AimBox& box, const Look& look, uint32_t seed) const;
 
     const LightmapReceivers& receivers_;
     Tile tile_;
