@@ -90,6 +90,8 @@ def draw_last_bake(layout, context):
 def _error_lines(error):
     if "estimated_rms" in error:
         yield f"Error: {error['estimated_rms']:.1%} (95% of texels within {error.get('p95', 0.0):.1%})"
+    if error.get("spread", 0.0) > UNSURE:
+        yield f"Few bright samples rule the error: it is known to ±{error['spread']:.0%} only"
     if error.get("target"):
         yield f"Target: {error['target']:.1%}, reached by {error.get('share_reached', 0.0):.0%} of texels"
     following = error.get("next_step")

@@ -73,7 +73,8 @@ json error_json(const Job& job, const JobOutput& o) {
             {"target", job.settings().noise_target},
             {"share_reached",
              e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
-            {"calibration", o.bake.error_calibration},
+            {"calibration", o.bake.calibration.factor},
+            {"spread", o.bake.calibration.spread},
             {"next_step", {{"noise", rms / 2.0}, {"seconds", job.seconds() + 3.0 * gather}}}};
 }
 

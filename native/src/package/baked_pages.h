@@ -30,9 +30,6 @@ struct BakedPages {
     uint64_t clamped_texels = 0; ///< too bright for the packed format
 };
 
-/// Share of a receiver's rays that may meet the inside of solids before its light is distrusted.
-inline constexpr float kInsideShare = 0.3f;
-
 /// Scatters receivers to their texels, stitches seams, fills gaps and packs (algorithms.md 1, 9).
 BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result,
                       const ajar_settings& settings, ThreadPool& pool, Progress& progress);

@@ -39,28 +39,32 @@ void Baker::keep_bounce(const std::vector<Vec3>& irradiance) {
 
 void Baker::direct_source() {
     const bool rays_needed = s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
-    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
-        DirectGroups groups(s_.emitters, LightRoles::all, {});
-        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples,
-                                     hash_combine(seed, s_.receivers.texel[tile.first]));
-        auto direct = make_sums(false), gather = make_sums(false);
-        const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
-        rays += sample_direct(s_, groups.groups()[0], tile, {static_cast<float>(gather_rays), 1.0f}, seed, {}, *direct);
-        if (rays_needed) {
-            GatherOptions o;
-            o.samples = gather_rays;
-            o.emission = true;
-            o.direct = &groups;
-            o.seed = seed;
-            rays += gather_tile(s_, tile, o, nullptr, *gather);
-        }
-        share_quads(tile, *gather, current_);
-        for (uint32_t lane = 0; lane < tile.count; ++lane)
-            current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
-        progress_.add_rays(rays);
-    });
+    pool_.for_each(
+        s_.receivers.tiles.size(), progress_,
+        [&](size_t i) {
+            const Tile& tile = s_.receivers.tiles[i];
+            const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
+            DirectGroups groups(s_.emitters, LightRoles::all, {});
+            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples,
+                                         hash_combine(seed, s_.receivers.texel[tile.first]));
+            auto direct = make_sums(false), gather = make_sums(false);
+            const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
+            rays +=
+                sample_direct(s_, groups.groups()[0], tile, {static_cast<float>(gather_rays), 1.0f}, seed, {}, *direct);
+            if (rays_needed) {
+                GatherOptions o;
+                o.samples = gather_rays;
+                o.emission = true;
+                o.direct = &groups;
+                o.seed = seed;
+                rays += gather_tile(s_, tile, o, nullptr, *gather);
+            }
+            share_quads(tile, *gather, current_);
+            for (uint32_t lane = 0; lane < tile.count; ++lane)
+                current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
+            progress_.add_rays(rays);
+        },
+        !in_background_);
     keep_bounce(current_);
 }
 
@@ -82,16 +86,19 @@ void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3
 
 /// One bounce: irradiance from radiance_ into current_.
 void Baker::bounce(uint32_t index) {
-    pool_.for_each(s_.receivers.tiles.size(), progress_, [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        auto sums = make_sums(false);
-        GatherOptions o;
-        o.samples = std::max(settings_.bounce_samples / 4, 4u);
-        o.unmapped_direct = index == 1;
-        o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
-        progress_.add_rays(gather_tile(s_, tile, o, radiance_.data(), *sums));
-        share_quads(tile, *sums, current_);
-    });
+    pool_.for_each(
+        s_.receivers.tiles.size(), progress_,
+        [&](size_t i) {
+            const Tile& tile = s_.receivers.tiles[i];
+            auto sums = make_sums(false);
+            GatherOptions o;
+            o.samples = bounce_rays(settings_);
+            o.unmapped_direct = index == 1;
+            o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
+            progress_.add_rays(gather_tile(s_, tile, o, radiance_.data(), *sums));
+            share_quads(tile, *sums, current_);
+        },
+        !in_background_);
     keep_bounce(current_);
 }
 
@@ -112,10 +119,11 @@ EmitterSet Baker::find_bright_texels() {
     return s_.emitters.with_bright_texels(std::move(bright));
 }
 
-BakeResult Baker::run() {
-    progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
+void Baker::find_source() {
+    const double start = progress_.elapsed();
+    if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     if (settings_.bounces > 0 || settings_.keep_bounces != 0) direct_source();
-    progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
+    if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces + (settings_.keep_bounces != 0 ? 1 : 0), settings_, progress_, result_.trial,
                 [&](uint32_t b) {
                     set_radiance(current_);
@@ -130,6 +138,11 @@ BakeResult Baker::run() {
         set_radiance(result_.source);
     }
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
+    source_seconds_ = progress_.elapsed() - start;
+}
+
+BakeResult Baker::run() {
+    find_source();
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);

@@ -13,6 +13,15 @@ namespace ajar {
 struct TileEstimate;
 struct TileLight;
 
+/// Share of a receiver's rays that may meet the inside of solids before its light is distrusted.
+inline constexpr float kInsideShare = 0.3f;
+
+/// What two answers for some receivers say of the standard errors that strata state.
+struct ErrorCalibration {
+    float factor = 1.0f; ///< measured over stated
+    float spread = 0.0f; ///< relative standard error of the factor: large where few bright samples rule the error
+};
+
 /// What a bake found, per receiver unless said otherwise.
 struct BakeResult {
     std::vector<Vec3> irradiance;           ///< W/m^2 along the shading normal, stored part
@@ -32,10 +41,10 @@ struct BakeResult {
     /// Standard errors per receiver with everything open, present and lit.
     const std::vector<float>& all_on_error() const { return total_error.empty() ? standard_error : total_error; }
 
-    uint32_t bright_texels = 0;     ///< aimed at by the final gather
-    float error_calibration = 1.0f; ///< measured standard error over the strata estimate
-    TrialTimes trial;               ///< of a trial, which leaves the arrays above unfinished
-    bool time_limited = false;      ///< the time limit, not the target, set the ray counts
+    uint32_t bright_texels = 0;   ///< aimed at by the final gather
+    ErrorCalibration calibration; ///< of the standard errors, already in them
+    TrialTimes trial;             ///< of a trial, which leaves the arrays above unfinished
+    bool time_limited = false;    ///< the time limit, not the target, set the ray counts
 };
 
 /// Runs the transport passes over all receivers. Throws Cancelled.
@@ -47,12 +56,14 @@ public:
     BakeResult run();
 
 private:
-    /// What the first packet of a tile got beyond the first rays, and the weight of that answer.
+    /// What the packet of a tile that is checked got beyond the first rays, and the weight of that answer.
     struct FurtherRays {
         RayPlan rays;
         float share = 0.0f;
     };
 
+    /// The light that the final gather reflects, and its emitters.
+    void find_source();
     void direct_source();
     void bounce(uint32_t index);
     void set_radiance(const std::vector<Vec3>& irradiance);
@@ -66,11 +77,14 @@ private:
     DirectGroups look_around(const Tile& tile, uint32_t seed);
     TileEstimate estimate(const Tile& tile, RayPlan plan, DirectGroups& groups, PacketChoice packets, uint32_t seed,
                           bool keep_sh);
-    FurtherRays refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
-                       TileLight& light);
+    FurtherRays refine(size_t tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed, TileLight& light);
     void final_gather();
     void gather_in_rounds();
     void finish_tile(size_t tile);
+    /// A second answer for the part of tile i that is checked.
+    TileLight second_answer(size_t i, uint32_t seed);
+    /// A baker with another source of fewer rays, to see how much the source's noise matters; null without bounces.
+    std::unique_ptr<Baker> other_source();
     void calibrate_error();
     bool gathers() const;
     /// Seconds that the time limit leaves for the passes.
@@ -84,6 +98,8 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
+    bool in_background_ = false;  ///< shows no progress of its own
+    double source_seconds_ = 0.0; ///< that find_source() took
     BakeResult result_;
     NoiseGoal goal_;
     RayPlan first_;                    ///< rays of every receiver

@@ -8,9 +8,7 @@ namespace {
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
 constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces after the first may take
 constexpr uint32_t kLeastBounceSamples = 16;
-constexpr size_t kCalibrationStep = 4; ///< every n-th tile of many is estimated twice
-constexpr size_t kLeastTwins = 16;     ///< tiles, if there are as many
-constexpr float kQuadNormal = 0.95f;   ///< receivers of a 2x2 block share bounce rays if their normals agree
+constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 } // namespace
 
@@ -59,12 +57,17 @@ Tile pilot_part(const Tile& tile, uint32_t part) {
     return {tile.first + first, count};
 }
 
+float dark_level(std::vector<float> levels) {
+    if (levels.empty()) return 0.0f;
+    const auto middle = levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2);
+    std::nth_element(levels.begin(), middle, levels.end());
+    return 0.01f * *middle;
+}
+
 float dark_level(const std::vector<MeasuredNoise>& pilot) {
     std::vector<float> levels;
     for (const MeasuredNoise& p : pilot) levels.push_back(p.level);
-    if (levels.empty()) return 0.0f;
-    std::nth_element(levels.begin(), levels.begin() + static_cast<ptrdiff_t>(levels.size() / 2), levels.end());
-    return 0.01f * levels[levels.size() / 2];
+    return dark_level(std::move(levels));
 }
 
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
@@ -77,24 +80,6 @@ GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, 
     o.direct = &groups;
     o.seed = seed;
     return o;
-}
-
-size_t calibration_step(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTwins, 1, kCalibrationStep); }
-
-Vec2 compare_twins(float a, float b, double variance) {
-    const float level = 0.5f * (a + b);
-    if (!(level > 0.0f)) return Vec2(0.0f);
-    const double relative = variance / (double{level} * level);
-    if (relative < 1e-10) return Vec2(0.0f);
-    const float d = (a - b) / level;
-    return {0.5f * d * d, static_cast<float>(relative)};
-}
-
-float error_calibration(const std::vector<Vec2>& parts) {
-    double twin = 0.0, strata = 0.0;
-    for (const Vec2& p : parts) twin += p.x, strata += p.y;
-    if (parts.size() < 8 || !(strata > 0.0)) return 1.0f;
-    return static_cast<float>(std::clamp(std::sqrt(twin / strata), 0.25, 4.0));
 }
 
 bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size_t first, double seconds_per_ray,

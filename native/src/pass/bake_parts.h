@@ -42,7 +42,11 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
 /// fills can be aimed at exactly.
 std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of);
 
+/// Rays per receiver of a bounce: blocks of four receivers share theirs.
+inline uint32_t bounce_rays(const ajar_settings& settings) { return std::max(settings.bounce_samples / 4, 4u); }
+
 /// 1% of the median level: what counts as dark.
+float dark_level(std::vector<float> levels);
 float dark_level(const std::vector<MeasuredNoise>& pilot);
 
 /// Receivers that stand for a part of a tile in the pilot pass.
@@ -51,16 +55,6 @@ Tile pilot_part(const Tile& tile, uint32_t part);
 /// Final gather rays of a plan that share emission with the emitter samples of groups.
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed);
-
-/// Every how manyth tile is estimated twice, to correct the stated error: of few tiles more.
-size_t calibration_step(size_t tiles);
-
-/// Half the squared difference of two answers for a receiver, and what the strata of both say it should be, both over
-/// the squared level; 0, 0 where they say nothing of each other. variance: mean of the two.
-Vec2 compare_twins(float a, float b, double variance);
-
-/// Factor of the strata's standard errors, from the sums of compare_twins() of a bake; 1 if they are too few.
-float error_calibration(const std::vector<Vec2>& parts);
 
 /// Tiles of a gather against the clock are done in rounds, each of tiles from all over the scene.
 struct Rounds {

@@ -5,6 +5,7 @@
 
 #include "pass/bake.h"
 #include "pass/tile_estimate.h"
+#include "pass/twin_check.h"
 
 namespace ajar {
 
@@ -126,9 +127,10 @@ void Baker::plan_rays() {
     result_.time_limited = pace_->begin(time_left(), seconds_per_ray, first_, goal_);
 }
 
-/// Adds further rays to the packets of a tile that need them, all packets with one need together.
-Baker::FurtherRays Baker::refine(const Tile& tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
+/// Adds further rays to the packets of tile i that need them, all packets with one need together.
+Baker::FurtherRays Baker::refine(size_t i, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
                                  TileLight& light) {
+    const Tile& tile = s_.receivers.tiles[i];
     const std::vector<MeasuredNoise> noise = packet_noise(first, tile.count);
     std::vector<RayPlan> more;
     for (const MeasuredNoise& n : noise) more.push_back(missing_rays(n, first.plan, goal_));
@@ -148,7 +150,8 @@ Baker::FurtherRays Baker::refine(const Tile& tile, const TileEstimate& first, Di
     }
     for (uint32_t q = 0; q < noise.size(); ++q)
         light.add(first, q * kLanes, std::min((q + 1) * kLanes, tile.count), 1.0f - share[q]);
-    return {more[0], share[0]};
+    const uint32_t watched = (TwinCheck::part(tile, i).first - tile.first) / kLanes;
+    return {more[watched], share[watched]};
 }
 
 void Baker::final_gather() {
@@ -176,7 +179,8 @@ void Baker::final_gather() {
 }
 
 double Baker::time_left() const {
-    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count();
+    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count() -
+           source_seconds_ / TwinCheck::kSourcePart;
 }
 
 /// Every round takes tiles from all over the scene, so each takes about as long.
@@ -202,7 +206,7 @@ void Baker::finish_tile(size_t i) {
     DirectGroups groups = look_around(tile, seed);
     auto light = std::make_unique<TileLight>();
     const TileEstimate first = estimate(tile, first_, groups, {}, seed, keep_sh);
-    further_[i] = refine(tile, first, groups, hash_combine(seed, 1), *light);
+    further_[i] = refine(i, first, groups, hash_combine(seed, 1), *light);
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const size_t r = tile.first + lane;
         result_.irradiance[r] = light->irradiance[lane];
@@ -215,33 +219,52 @@ void Baker::finish_tile(size_t i) {
     }
 }
 
-/// The strata estimate is biased up where strata differ in mean. A second, independent answer
-/// for a few receivers measures by how much.
+TileLight Baker::second_answer(size_t i, uint32_t seed) {
+    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(tile, i);
+    const FurtherRays& further = further_[i];
+    DirectGroups groups = look_around(tile, seed);
+    groups.start_at(part.first - tile.first);
+    TileLight light;
+    light.add(estimate(part, first_, groups, {}, seed, false), 0, part.count, 1.0f - further.share);
+    if (further.share > 0.0f)
+        light.add(estimate(part, further.rays, groups, {}, hash_combine(seed, 1), false), 0, part.count, further.share);
+    return light;
+}
+
+std::unique_ptr<Baker> Baker::other_source() {
+    if (settings_.bounces == 0) return nullptr;
+    auto other = std::make_unique<Baker>(s_, other_source_settings(settings_), pool_, progress_);
+    other->in_background_ = true;
+    other->first_ = first_, other->further_ = further_;
+    other->find_source();
+    return other;
+}
+
 void Baker::calibrate_error() {
-    const size_t step = calibration_step(s_.receivers.tiles.size()), count = s_.receivers.tiles.size() / step;
-    std::vector<Vec2> parts(count, Vec2(0.0f));
+    TwinCheck check(s_.receivers, result_);
+    const std::unique_ptr<Baker> other = other_source();
     pool_.for_each(
-        count, progress_,
+        check.count(), progress_,
         [&](size_t k) {
-            const size_t i = k * step;
-            const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
+            const size_t i = k * check.step();
+            const Tile part = TwinCheck::part(s_.receivers.tiles[i], i);
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
-            DirectGroups groups = look_around(tile, seed);
-            TileLight twin;
-            twin.add(estimate(tile, first_, groups, {}, seed, false), 0, tile.count, 1.0f - further_[i].share);
-            if (further_[i].share > 0.0f)
-                twin.add(estimate(tile, further_[i].rays, groups, {}, hash_combine(seed, 1), false), 0, tile.count,
-                         further_[i].share);
-            for (uint32_t lane = 0; lane < tile.count; ++lane) {
-                const size_t r = tile.first + lane;
+            const TileLight second = second_answer(i, seed);
+            TileLight third;
+            if (other != nullptr) third = other->second_answer(i, hash_combine(seed, 1));
+            for (uint32_t lane = 0; lane < part.count; ++lane) {
+                const uint32_t r = part.first + lane;
                 const double own = double{result_.standard_error[r]} * result_.standard_error[r];
-                parts[k] += compare_twins(luminance(result_.irradiance[r]), luminance(twin.irradiance[lane]),
-                                          0.5 * (own + twin.variance[lane]));
+                const float twin = luminance(second.irradiance[lane]);
+                check.compare(
+                    k, r,
+                    {luminance(result_.irradiance[r]), twin,
+                     other != nullptr ? luminance(third.irradiance[lane]) : twin, 0.5 * (own + second.variance[lane])});
             }
         },
         false);
-    result_.error_calibration = error_calibration(parts);
-    for (float& e : result_.standard_error) e *= result_.error_calibration;
+    result_.calibration = check.finish(source_rays_ratio(settings_));
+    for (float& e : result_.standard_error) e *= result_.calibration.factor;
 }
 
 } // namespace ajar

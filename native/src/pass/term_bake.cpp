@@ -100,27 +100,30 @@ ReceiverRows TermBaker::prune(const ReceiverRows& rows, uint32_t seed) const {
 void TermBaker::direct_source() {
     const bool rays_needed = s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
-    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
-        DirectGroups groups(s_.emitters, LightRoles::all, all_sets_);
-        uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kUnseenSamples,
-                                     hash_combine(seed, s_.receivers.texel[tile.first]));
-        TermSums direct(table_), gather(table_);
-        const uint32_t gather_rays = rays_needed ? std::max(settings_.bounce_samples / 4, 4u) : 0;
-        rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr, table_,
-                              limits_, direct);
-        if (rays_needed) {
-            GatherOptions o;
-            o.samples = gather_rays;
-            o.emission = true;
-            o.direct = &groups;
-            o.seed = seed;
-            rays += gather_tile(s_, tile, o, nullptr, table_, limits_, gather);
-        }
-        tiles[i] = tile_rows(tile, gather, &direct);
-        progress_.add_rays(rays);
-    });
+    pool_.for_each(
+        tiles.size(), progress_,
+        [&](size_t i) {
+            const Tile& tile = s_.receivers.tiles[i];
+            const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
+            DirectGroups groups(s_.emitters, LightRoles::all, all_sets_);
+            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kUnseenSamples,
+                                         hash_combine(seed, s_.receivers.texel[tile.first]));
+            TermSums direct(table_), gather(table_);
+            const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
+            rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr,
+                                  table_, limits_, direct);
+            if (rays_needed) {
+                GatherOptions o;
+                o.samples = gather_rays;
+                o.emission = true;
+                o.direct = &groups;
+                o.seed = seed;
+                rays += gather_tile(s_, tile, o, nullptr, table_, limits_, gather);
+            }
+            tiles[i] = tile_rows(tile, gather, &direct);
+            progress_.add_rays(rays);
+        },
+        !in_background_);
     take(tiles);
 }
 
@@ -128,19 +131,23 @@ void TermBaker::bounce(uint32_t index) {
     radiance_ = radiance_rows(current_, s_.receivers, s_.scene.texel_count());
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
-    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        TermSums sums(table_);
-        GatherOptions o;
-        o.samples = std::max(settings_.bounce_samples / 4, 4u);
-        o.unmapped_direct = index == 1;
-        o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
-        TileAims aims(s_.receivers, tile);
-        const uint64_t rays = aim_at_doors(aims, tile, o.samples, hash_combine(o.seed, s_.receivers.texel[tile.first]));
-        o.aims = aims.empty() ? nullptr : &aims;
-        progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
-        tiles[i] = tile_rows(tile, sums, nullptr);
-    });
+    pool_.for_each(
+        tiles.size(), progress_,
+        [&](size_t i) {
+            const Tile& tile = s_.receivers.tiles[i];
+            TermSums sums(table_);
+            GatherOptions o;
+            o.samples = bounce_rays(settings_);
+            o.unmapped_direct = index == 1;
+            o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
+            TileAims aims(s_.receivers, tile);
+            const uint64_t rays =
+                aim_at_doors(aims, tile, o.samples, hash_combine(o.seed, s_.receivers.texel[tile.first]));
+            o.aims = aims.empty() ? nullptr : &aims;
+            progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
+            tiles[i] = tile_rows(tile, sums, nullptr);
+        },
+        !in_background_);
     take(tiles);
 }
 
@@ -198,15 +205,21 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
                                       level > light.standard_error);
 }
 
-BakeResult TermBaker::run() {
+void TermBaker::find_source() {
+    const double start = progress_.elapsed();
     if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
-    progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
+    if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
-    progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
+    if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
     radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
                               s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
+    source_seconds_ = progress_.elapsed() - start;
+}
+
+BakeResult TermBaker::run() {
+    find_source();
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
     std::vector<RayPlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);

@@ -22,6 +22,8 @@ public:
 private:
     struct Estimate;
 
+    /// The light that the final gather reflects, its emitters and the doors it aims at.
+    void find_source();
     void direct_source();
     void bounce(uint32_t index);
     /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
@@ -48,6 +50,10 @@ private:
     void gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile);
     void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
     void join(std::vector<struct FinalTile>& tiles);
+    /// Another answer for the part of tile i that is checked.
+    Estimate answer(size_t i, const RayPlan& plan, uint32_t seed) const;
+    /// As in the plain bake; null also if memory does not reach.
+    std::unique_ptr<TermBaker> other_source();
     void calibrate_error(const std::vector<RayPlan>& plan);
     bool gathers() const;
     /// Seconds that the time limit leaves for the passes if that much light gets stored beside the base.
@@ -62,6 +68,8 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
+    bool in_background_ = false;  ///< shows no progress of its own
+    double source_seconds_ = 0.0; ///< that find_source() took
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;

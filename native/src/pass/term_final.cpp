@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "pass/term_estimate.h"
+#include "pass/twin_check.h"
 
 namespace ajar {
 
@@ -80,7 +81,8 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
 }
 
 double TermBaker::time_left(double lights) const {
-    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count());
+    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count()) -
+           source_seconds_ / TwinCheck::kSourcePart;
 }
 
 /// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.
@@ -133,26 +135,50 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     join(tiles);
 }
 
-/// As in the plain bake: a second answer for a few receivers corrects the strata estimate of all.
+TermBaker::Estimate TermBaker::answer(size_t i, const RayPlan& plan, uint32_t seed) const {
+    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(tile, i);
+    DirectGroups groups = look_around(tile, plan.direct, seed);
+    groups.start_at(part.first - tile.first);
+    return estimate(part, plan, groups, seed);
+}
+
+std::unique_ptr<TermBaker> TermBaker::other_source() {
+    if (settings_.bounces == 0) return nullptr;
+    auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
+    other->in_background_ = true;
+    try {
+        other->find_source();
+    } catch (const Error& e) {
+        if (e.code() != AJAR_ERROR_MEMORY) throw;
+        return nullptr;
+    }
+    return other;
+}
+
 void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
-    const size_t step = calibration_step(s_.receivers.tiles.size()), count = s_.receivers.tiles.size() / step;
-    std::vector<Vec2> parts(count, Vec2(0.0f));
+    TwinCheck check(s_.receivers, result_);
+    const std::unique_ptr<TermBaker> other = other_source();
     pool_.for_each(
-        count, progress_,
+        check.count(), progress_,
         [&](size_t k) {
-            const size_t i = k * step;
-            const Tile tile = pilot_part(s_.receivers.tiles[i], 0);
-            const Estimate a = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin)),
-                           b = estimate(tile, plan[i], hash_combine(settings_.seed, kSaltTwin + 1));
-            for (uint32_t lane = 0; lane < tile.count; ++lane)
-                parts[k] += compare_twins(luminance(a.total(lane)), luminance(b.total(lane)),
-                                          0.5 * (a.total_variance(lane) + b.total_variance(lane)));
+            const size_t i = k * check.step();
+            const Tile part = TwinCheck::part(s_.receivers.tiles[i], i);
+            const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
+            const Estimate a = answer(i, plan[i], seed), b = answer(i, plan[i], hash_combine(seed, 1));
+            std::unique_ptr<const Estimate> third;
+            if (other != nullptr) third.reset(new Estimate(other->answer(i, plan[i], hash_combine(seed, 2))));
+            for (uint32_t lane = 0; lane < part.count; ++lane) {
+                const float second = luminance(b.total(lane));
+                check.compare(k, part.first + lane,
+                              {luminance(a.total(lane)), second, third ? luminance(third->total(lane)) : second,
+                               0.5 * (a.total_variance(lane) + b.total_variance(lane))});
+            }
         },
         false);
-    result_.error_calibration = error_calibration(parts);
+    result_.calibration = check.finish(source_rays_ratio(settings_));
     for (auto* v : {&result_.standard_error, &result_.total_error})
-        for (float& e : *v) e *= result_.error_calibration;
-    for (TermLight& l : result_.terms.light) l.standard_error *= result_.error_calibration;
+        for (float& e : *v) e *= result_.calibration.factor;
+    for (TermLight& l : result_.terms.light) l.standard_error *= result_.calibration.factor;
 }
 
 } // namespace ajar

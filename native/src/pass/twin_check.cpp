@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pass/twin_check.h"
+
+#include "pass/bake_parts.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr size_t kMostStep = 4;    ///< of many tiles
+constexpr size_t kLeastTiles = 16; ///< if there are as many
+constexpr size_t kFewParts = 8;
+constexpr double kLeastFactor = 0.25, kMostFactor = 4.0;
+
+std::vector<float> levels(const BakeResult& result) {
+    if (!result.total.empty()) return result.total;
+    std::vector<float> out;
+    for (const Vec3& e : result.irradiance) out.push_back(luminance(e));
+    return out;
+}
+
+} // namespace
+
+ajar_settings other_source_settings(ajar_settings settings) {
+    settings.seed = hash_combine(settings.seed, kSaltTwin);
+    settings.bounce_samples = std::max(settings.bounce_samples / TwinCheck::kSourcePart, 1u);
+    settings.keep_bounces = settings.keep_sh = 0;
+    settings.time_limit = 0.0f;
+    return settings;
+}
+
+double source_rays_ratio(const ajar_settings& settings) {
+    return double(bounce_rays(settings)) / bounce_rays(other_source_settings(settings));
+}
+
+TwinCheck::TwinCheck(const LightmapReceivers& receivers, const BakeResult& result)
+    : receivers_(receivers),
+      result_(result),
+      step_(std::clamp<size_t>(receivers.tiles.size() / kLeastTiles, 1, kMostStep)),
+      dark_(dark_level(levels(result))),
+      parts_(receivers.tiles.size() / step_) {}
+
+Tile TwinCheck::part(const Tile& tile, size_t i) {
+    return pilot_part(tile, hash32(static_cast<uint32_t>(i)) % kPilotParts);
+}
+
+void TwinCheck::compare(size_t k, uint32_t receiver, const Answers& a) {
+    if (receivers_.ring[receiver] || result_.inside[receiver] > kInsideShare) return;
+    const double scale = 0.5 * (double{a.first} + a.second) + dark_;
+    if (!(scale > 0.0)) return;
+    const auto half_square = [&](double d) { return 0.5 * d * d / (scale * scale); };
+    parts_[k].twin += half_square(double{a.first} - a.second);
+    parts_[k].other += half_square(double{a.first} - a.other);
+    parts_[k].strata += a.variance / (scale * scale);
+}
+
+// Half the squared difference of answers from two sources holds the noise of the gather once, and half that of
+// both sources. The spread is that of a ratio of sums, and half as large for its root.
+ErrorCalibration TwinCheck::finish(double ratio) const {
+    const double sources = 0.5 * (1.0 + ratio);
+    double twin = 0.0, other = 0.0, strata = 0.0, squares = 0.0;
+    for (const Part& p : parts_) twin += p.twin, other += p.other, strata += p.strata;
+    const double source = std::max(other - twin, 0.0) / sources, noise = twin + source;
+    if (parts_.size() < kFewParts || !(strata > 0.0) || !(noise > 0.0)) return {};
+    const double calibration = noise / strata;
+    for (const Part& p : parts_) {
+        const double part = p.twin + (source > 0.0 ? (p.other - p.twin) / sources : 0.0) - calibration * p.strata;
+        squares += part * part;
+    }
+    return {static_cast<float>(std::clamp(std::sqrt(calibration), kLeastFactor, kMostFactor)),
+            static_cast<float>(0.5 * std::sqrt(squares) / noise)};
+}
+
+} // namespace ajar
