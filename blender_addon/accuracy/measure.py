@@ -132,4 +132,4 @@ def estimate_check(first, second):
         seen.append(0.5 * ((a - b) ** 2)[good])
     levels, told, seen = (np.concatenate(x) for x in (levels, told, seen))
     weight = 1.0 / (levels + 0.01 * np.median(levels) + 1e-30) ** 2
-    return float(_root((told * weight).mean())), float(_root((seen * weight).mean()))
+    return tuple(float(_root(np.minimum(x * weight, 1.0).mean())) for x in (told, seen))

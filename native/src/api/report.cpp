@@ -52,7 +52,7 @@ std::vector<float> relative_errors(const JobOutput& o) {
     std::vector<float> errors;
     for (size_t r = 0; r < levels.size(); ++r)
         if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)
-            errors.push_back(o.bake.all_on_error()[r] / (levels[r] + floor));
+            errors.push_back(std::min(o.bake.all_on_error()[r] / (levels[r] + floor), 1.0f));
     std::sort(errors.begin(), errors.end());
     return errors;
 }

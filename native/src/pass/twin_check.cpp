@@ -48,10 +48,10 @@ void TwinCheck::compare(size_t k, uint32_t receiver, const Answers& a) {
     if (receivers_.ring[receiver] || result_.inside[receiver] > kInsideShare) return;
     const double scale = 0.5 * (double{a.first} + a.second) + dark_;
     if (!(scale > 0.0)) return;
-    const auto half_square = [&](double d) { return 0.5 * d * d / (scale * scale); };
+    const auto half_square = [&](double d) { return std::min(0.5 * d * d / (scale * scale), 1.0); };
     parts_[k].twin += half_square(double{a.first} - a.second);
     parts_[k].other += half_square(double{a.first} - a.other);
-    parts_[k].strata += a.variance / (scale * scale);
+    parts_[k].strata += std::min(a.variance / (scale * scale), 1.0);
 }
 
 // Half the squared difference of answers from two sources holds the noise of the gather once, and half that of

@@ -7,7 +7,8 @@ namespace ajar {
 
 /// The strata estimate of noise is biased up where strata differ in mean, and knows nothing of the noise of the
 /// light that the final gather reflects. Further independent answers for some receivers of a bake measure both,
-/// in the norm in which the error is stated: relative to the light, root mean square over valid texels.
+/// in the norm in which the error is stated: relative to the light, root mean square over valid texels, where no texel
+/// counts as more than all wrong.
 class TwinCheck {
 public:
     /// Of a bake whose result holds light and validity already. Both must outlive it.
