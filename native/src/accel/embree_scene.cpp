@@ -156,10 +156,9 @@ struct Tracer::Impl {
         if (device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
         fixed.scene = new_scene(RTC_SCENE_FLAG_ROBUST);
         switches.scene = new_scene(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag));
-        const size_t bytes = s.positions.size() * sizeof(Vec3);
-        vertices = rtcNewBuffer(device, bytes + kPadding);
+        vertices = rtcNewBuffer(device, s.positions.size() * sizeof(Vec3) + kPadding);
         if (vertices == nullptr) no_memory();
-        std::memcpy(rtcGetBufferData(vertices), s.positions.data(), bytes);
+        std::copy(s.positions.begin(), s.positions.end(), static_cast<Vec3*>(rtcGetBufferData(vertices)));
     }
 
     RTCScene new_scene(RTCSceneFlags flags) const {
