@@ -5,6 +5,7 @@
 
 #include "api/job.h"
 #include "api/memory_report.h"
+#include "pass/bake_parts.h"
 
 namespace ajar {
 
@@ -46,9 +47,7 @@ std::vector<float> relative_errors(const JobOutput& o) {
     for (size_t r = 0; r < o.receivers.count(); ++r)
         levels.push_back(o.bake.total.empty() ? luminance(o.pages.irradiance[o.receivers.texel[r]]) : o.bake.total[r]);
     if (levels.empty()) return {};
-    std::vector<float> sorted = levels;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const float floor = 0.01f * sorted[sorted.size() / 2];
+    const float floor = dark_level(levels);
     std::vector<float> errors;
     for (size_t r = 0; r < levels.size(); ++r)
         if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)

@@ -141,8 +141,7 @@ void TermBaker::bounce(uint32_t index) {
             o.unmapped_direct = index == 1;
             o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
             TileAims aims(s_.receivers, tile);
-            const uint64_t rays =
-                aim_at_doors(aims, tile, o.samples, hash_combine(o.seed, s_.receivers.texel[tile.first]));
+            const uint64_t rays = aim_at_doors(aims, tile, o.samples, o.seed);
             o.aims = aims.empty() ? nullptr : &aims;
             progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);

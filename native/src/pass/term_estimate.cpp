@@ -103,11 +103,12 @@ uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samp
     const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
     const uint32_t even = (share + 1) & ~1u;
     const float least = doors_.empty() ? 0.0f : kAimShare * indirect_light(tile);
+    const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[tile.first]);
     uint64_t rays = 0;
     for (const AimBox& door : doors_) {
         if (aims.count() == kMostAims) break;
         rays += aims.add(
-            s_.tracer, door, [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least, seed);
+            s_.tracer, door, [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least, own_seed);
     }
     return rays;
 }
@@ -133,8 +134,7 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     uint64_t rays = 0;
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
     TileAims aims(s_.receivers, tile);
-    if (plan.gather != 0)
-        rays += aim_at_doors(aims, tile, plan.gather, hash_combine(seed, s_.receivers.texel[tile.first]));
+    if (plan.gather != 0) rays += aim_at_doors(aims, tile, plan.gather, seed);
     const TileAims* aimed = aims.empty() ? nullptr : &aims;
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
                           table_, limits_, t.direct);

@@ -58,7 +58,7 @@ struct Gatherer {
           sink(s),
           mis_gather(static_cast<float>(options.samples)),
           tile_rays(scene.receivers, t, options.share, options.seed),
-          special(SurfaceTable::kTransmits | SurfaceTable::kUnmapped | SurfaceTable::kSwitch |
+          special(SurfaceTable::kTransmits | SurfaceTable::kUnmapped |
                   (options.emission ? SurfaceTable::kEmits : SurfaceTable::kPlain)) {}
 
     void run() {

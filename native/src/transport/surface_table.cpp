@@ -19,7 +19,6 @@ SurfaceTable::SurfaceTable(const Snapshot& scene) : entries_(scene.triangles.siz
         f |= t.mirrored ? kMirrored : 0;
         f |= closed[instance.mesh] && !instance.hollow && !material.transmits ? kSolid : 0;
         f |= instance.lightmapped ? 0 : kUnmapped;
-        f |= instance.element != kNoElement ? kSwitch : 0;
         if (instance.lightmapped) {
             const auto uv = texel_triangle(scene, i);
             const Page& page = scene.pages[instance.page];

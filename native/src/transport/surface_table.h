@@ -23,8 +23,7 @@ public:
         kUnmapped = 4, ///< no lightmap: its light is estimated at the hit
         kOneSided = 8,
         kMirrored = 16, ///< the normal is minus the cross product
-        kSolid = 32,    ///< closed mesh: nothing is seen from inside
-        kSwitch = 64    ///< part of a door or toggle
+        kSolid = 32     ///< closed mesh: nothing is seen from inside
     };
     explicit SurfaceTable(const Snapshot& scene);
 
