@@ -6,6 +6,9 @@ from .. import job
 from ..apply import record
 from .common import Properties, Sidebar, draw_text
 
+# A stated error that is known no better than this, relative to itself, is shown with its doubt.
+UNSURE = 0.25
+
 
 def _duration(seconds):
     minutes, seconds = divmod(int(round(seconds)), 60)

@@ -28,7 +28,8 @@ class Properties:
 
 def draw_text(layout, text, icon, context):
     """Wraps text to the width of the region, at about seven pixels a letter."""
-    width = int(context.region.width / (7.5 * context.preferences.system.ui_scale)) - 5
+    scale = context.preferences.system.ui_scale or 1.0  # 0 without a window
+    width = int(context.region.width / (7.5 * scale)) - 5
     column = layout.column(align=True)
     for index, line in enumerate(textwrap.wrap(text, max(width, 16))):
         column.label(text=line, icon=icon if index == 0 else "BLANK1")

@@ -12,6 +12,7 @@ from support.elements import add, collection, glow, lamp, light_set, quad, run_t
 
 ADDON = load_addon()
 from ajar import checks, checks_elements, panels  # noqa: E402
+from ajar.apply import record  # noqa: E402
 
 ICONS = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
 
@@ -196,6 +197,30 @@ def test_every_panel_draws():
         None, bpy.context, item, None, scene.ajar.light_sets[0], 0, None, ""
     )
     assert item.drawn == {"name", "color", "weight"}
+
+
+def test_last_bake_says_what_it_knows():
+    record.write_record(
+        bpy.context.scene,
+        {
+            "preset": "preview",
+            "seconds": 61.0,
+            "time_limited": True,
+            "error": {
+                "estimated_rms": 0.04,
+                "p95": 0.09,
+                "spread": 0.4,
+                "target": 0.03,
+                "share_reached": 0.5,
+                "next_step": {"noise": 0.02, "seconds": 240.0},
+            },
+            "self_check": {"ratio": 0.99, "ratio_error": 0.01},
+            "warnings": [["Lamp", "gives no light"]],
+        },
+    )
+    drawn = " ".join(draw(panel("AJAR_PT_sidebar_last")))
+    for said in ("time limit", "4.0%", "±40%", "50% of texels", "4 min 0 s", "99.0%", "Lamp: gives no light"):
+        assert said in drawn, (said, drawn)
 
 
 def test_panels_show_what_counts():
