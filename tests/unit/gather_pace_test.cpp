@@ -26,7 +26,7 @@ TEST(GatherPace, NothingChangesWhileTimeSuffices) {
     const double seconds = rays_per_receiver(first, goal) * kReceivers * 1e-6;
     EXPECT_FALSE(pace.begin(1.1 * seconds, 1e-6, first, goal));
     EXPECT_FALSE(pace.follow(kReceivers / 4, 0.25 * seconds, 0.85 * seconds, first, goal));
-    EXPECT_EQ(goal.target, kGoal.target);
+    EXPECT_EQ(goal.shortage, 0.0f);
 }
 
 TEST(GatherPace, NoiseGivesWayBeforeFirstRaysDo) {
@@ -34,7 +34,7 @@ TEST(GatherPace, NoiseGivesWayBeforeFirstRaysDo) {
     NoiseGoal goal = kGoal;
     const double all = rays_per_receiver(first, goal) * kReceivers * 1e-6;
     EXPECT_TRUE(GatherPace(pilot(), kPilot, kTiles, kReceivers).begin(0.5 * all, 1e-6, first, goal));
-    EXPECT_GT(goal.target, kGoal.target);
+    EXPECT_GT(goal.shortage, 0.0f);
     EXPECT_EQ(first.gather, kFirstRays.gather);
     EXPECT_LE(rays_per_receiver(first, goal) * kReceivers * 1e-6, 0.5 * all);
     goal = kGoal;
@@ -52,7 +52,7 @@ TEST(GatherPace, FixedCountsBecomeTheBestThatTimeAllows) {
     goal.target = 0.0f;
     EXPECT_TRUE(pace.begin(kReceivers * 500e-6, 1e-6, first, goal));
     EXPECT_EQ(first.gather, kFirstRays.gather);
-    EXPECT_GT(goal.target, 0.0f);
+    EXPECT_GT(goal.shortage, 0.0f);
     EXPECT_LE(rays_per_receiver(first, goal), 500.0);
 }
 
@@ -72,6 +72,62 @@ TEST(GatherPace, AGatherSlowerThanThePilotEndsInTime) {
         EXPECT_LT(now, limit) << slowness;
         EXPECT_GT(now, 0.75 * limit) << slowness; // ray counts are rounded
     }
+}
+
+/// Half of the places are quiet, some much noisier than others.
+std::vector<MeasuredNoise> mixed_pilot(size_t tiles) {
+    std::vector<MeasuredNoise> out;
+    for (size_t k = 0; k < tiles * kPilotParts; ++k) {
+        const float error = k / kPilotParts % 2 == 0 ? 0.1f : 0.2f * static_cast<float>(1 + k / kPilotParts);
+        out.push_back({1.0f, 0.5f * error * error, 0.5f * error * error});
+    }
+    return out;
+}
+
+struct Spent {
+    double rays = 0.0, variance = 0.0;
+};
+Spent spent(const std::vector<MeasuredNoise>& pilot, const std::vector<RayPlan>& plan) {
+    Spent sum;
+    for (size_t i = 0; i < plan.size(); ++i) {
+        const MeasuredNoise& n = pilot[i * kPilotParts];
+        sum.rays += 64.0 * (plan[i].gather + plan[i].direct);
+        sum.variance += 32.0 * (n.gather_variance / plan[i].gather + n.direct_variance / plan[i].direct);
+    }
+    return sum;
+}
+
+TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
+    constexpr size_t kTileCount = 12;
+    const std::vector<MeasuredNoise> noise = mixed_pilot(kTileCount);
+    const std::vector<Tile> tiles(kTileCount, Tile{0, 64});
+    NoiseGoal goal{0.01f, 0.0f, {1u << 20, 1u << 20}, true, {}}, even = goal;
+    std::vector<RayPlan> wanted = plan_tiles(noise, kPilot, goal), plan = wanted;
+    const TilePace pace(noise, kPilot, tiles, goal, wanted);
+    EXPECT_TRUE(pace.fit(0, spent(noise, wanted).rays / 20.0, plan));
+    const Spent own = spent(noise, plan);
+    EXPECT_LE(own.rays, spent(noise, wanted).rays / 20.0);
+    for (even.target = goal.target; spent(noise, plan_tiles(noise, kPilot, even)).rays > own.rays;) even.target *= 1.01f;
+    EXPECT_LT(own.variance, 0.8 * spent(noise, plan_tiles(noise, kPilot, even)).variance);
+}
+
+TEST(GatherPace, TilesThatAreDoneKeepTheirRays) {
+    const std::vector<Tile> tiles(32, Tile{0, 64});
+    const std::vector<MeasuredNoise> noise = mixed_pilot(32);
+    std::vector<RayPlan> wanted(32, {1024, 1024}), plan = wanted;
+    const TilePace pace(noise, kPilot, tiles, kGoal, wanted);
+    EXPECT_FALSE(pace.fit(0, 1e9, plan));
+    EXPECT_TRUE(pace.fit(8, 1e4, plan));
+    const Rounds rounds{32};
+    for (size_t i = 0; i < 32; ++i) {
+        if (rounds.of(i) < 8) {
+            EXPECT_EQ(plan[i].gather, 1024u);
+        } else {
+            EXPECT_LE(plan[i].gather, 64u);
+        }
+    }
+    EXPECT_FALSE(pace.fit(8, 1e9, plan)); // time came back
+    EXPECT_EQ(plan[31].gather, 1024u);
 }
 
 } // namespace

@@ -82,30 +82,6 @@ GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, 
     return o;
 }
 
-bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size_t first, double seconds_per_ray,
-                double seconds) {
-    const Rounds rounds{tiles.size()};
-    std::vector<size_t> open;
-    for (size_t i = 0; i < tiles.size(); ++i)
-        if (i % rounds.count() >= first) open.push_back(i);
-    const auto cost = [&] {
-        double rays = 0.0;
-        for (const size_t i : open) rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
-        return rays * seconds_per_ray;
-    };
-    bool limited = false;
-    while (cost() > seconds) {
-        bool changed = false;
-        for (const size_t i : open) {
-            if (plan[i].gather > 8) plan[i].gather /= 2, changed = true;
-            if (plan[i].direct > 4) plan[i].direct /= 2, changed = true;
-        }
-        if (!changed) break;
-        limited = true;
-    }
-    return limited;
-}
-
 uint32_t bounce_samples_in_time(const ajar_settings& settings, double start, double now, uint32_t passes_left) {
     uint32_t samples = settings.bounce_samples;
     if (!(settings.time_limit > 0.0f)) return samples;

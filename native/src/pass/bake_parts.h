@@ -65,11 +65,9 @@ struct Rounds {
     size_t size(size_t round) const { return (tiles - round + count() - 1) / count(); }
     /// Number k of a round.
     size_t tile(size_t round, size_t k) const { return round + k * count(); }
+    /// Round of a tile.
+    size_t of(size_t tile) const { return tile % count(); }
 };
-
-/// Halves the ray counts of the rounds from first on until they fit into seconds; true if it had to.
-bool limit_time(std::vector<RayPlan>& plan, const std::vector<Tile>& tiles, size_t first, double seconds_per_ray,
-                double seconds);
 
 /// Rays per bounce for the passes that are left after one that began at start, so that a short time limit leaves
 /// most of the time to the final gather. Seconds.

@@ -5,8 +5,20 @@ namespace ajar {
 
 namespace {
 
-constexpr float kLeastTarget = 1e-4f;  ///< stands for "as many rays as allowed" once time is short
-constexpr float kWorstTarget = 100.0f; ///< nobody gets further rays
+constexpr float kLeastTarget = 1e-4f; ///< stands for "as many rays as allowed" once time is short
+constexpr float kLeastShortage = 1e-8f, kWorstShortage = 1e4f;
+constexpr double kExact = 1.02; ///< ratio that the shortage is found to
+
+/// The least shortage, to within kExact, whose rays are affordable. The worst if none is.
+template <class Affordable>
+float least_shortage(Affordable&& affordable) {
+    double low = kLeastShortage, high = kWorstShortage;
+    while (high > low * kExact) {
+        const double middle = std::sqrt(low * high);
+        (affordable(static_cast<float>(middle)) ? high : low) = middle;
+    }
+    return static_cast<float>(high);
+}
 
 } // namespace
 
@@ -20,29 +32,21 @@ double GatherPace::rays(const RayPlan& first, const NoiseGoal& goal) const {
     return predict_rays(pilot_, pilot_rays_, tiles_, first, goal) / std::max(pilot_receivers_, 1.0);
 }
 
-/// The least noise from the wanted one up whose rays are affordable, per receiver.
 void GatherPace::fit(double affordable, const RayPlan& first, NoiseGoal& goal) const {
-    goal.target = wanted_;
-    if (rays(first, goal) <= affordable) return;
-    float low = wanted_, high = kWorstTarget;
-    for (int i = 0; i < 24; ++i) {
-        goal.target = std::sqrt(low * high);
-        (rays(first, goal) <= affordable ? high : low) = goal.target;
-    }
-    goal.target = high;
+    const auto suffices = [&](float shortage) {
+        goal.shortage = shortage;
+        return rays(first, goal) <= affordable;
+    };
+    if (!suffices(0.0f)) goal.shortage = least_shortage(suffices);
 }
 
 bool GatherPace::begin(double seconds, double seconds_per_ray, RayPlan& first, NoiseGoal& goal) {
     const double affordable = std::max(kPlannedPart * seconds, 0.0) / (seconds_per_ray * std::max(left_, 1u));
-    if (rays(first, goal) <= affordable) {
-        wanted_ = goal.target;
-        return false;
-    }
+    if (rays(first, goal) <= affordable) return false;
     if (!(goal.target > 0.0f)) {
         goal.target = kLeastTarget;
         first = {std::min(first.gather, kFirstRays.gather), std::min(first.direct, kFirstRays.direct)};
     }
-    wanted_ = goal.target;
     fit(affordable, first, goal);
     while (rays(first, goal) > affordable && (first.gather > 8 || first.direct > 4)) {
         if (first.gather > 8) first.gather /= 2;
@@ -56,9 +60,56 @@ bool GatherPace::follow(uint32_t receivers, double seconds_taken, double seconds
     predicted_ += rays(first, goal) * receivers;
     taken_ += seconds_taken;
     left_ -= std::min(receivers, left_);
-    if (left_ == 0 || !(wanted_ > 0.0f) || !(taken_ > 0.0)) return false;
+    if (left_ == 0 || !(goal.target > 0.0f) || !(taken_ > 0.0)) return false;
     fit(std::max(kPlannedPart * seconds_left, 0.0) * predicted_ / (taken_ * left_), first, goal);
-    return goal.target > wanted_;
+    return goal.shortage > 0.0f;
+}
+
+TilePace::TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
+                   const NoiseGoal& goal, std::vector<RayPlan> wanted)
+    : pilot_(std::move(pilot)),
+      pilot_rays_(pilot_rays),
+      tiles_(std::move(tiles)),
+      goal_(goal),
+      wanted_(std::move(wanted)) {
+    goal_.target = std::max(goal_.target, kLeastTarget);
+}
+
+double TilePace::rays(const std::vector<RayPlan>& plan, size_t round) const {
+    const Rounds rounds{tiles_.size()};
+    double sum = 0.0;
+    for (size_t i = 0; i < tiles_.size(); ++i)
+        if (rounds.of(i) >= round) sum += double(plan[i].gather + plan[i].direct) * tiles_[i].count;
+    return sum;
+}
+
+void TilePace::plan_with(float shortage, size_t round, std::vector<RayPlan>& plan) const {
+    NoiseGoal goal = goal_;
+    goal.shortage = shortage;
+    const Rounds rounds{tiles_.size()};
+    for (size_t i = 0; i < tiles_.size(); ++i) {
+        if (rounds.of(i) < round) continue;
+        const RayPlan p = shortage > 0.0f ? plan_tile(&pilot_[i * kPilotParts], pilot_rays_, goal) : wanted_[i];
+        plan[i] = {std::min(wanted_[i].gather, p.gather), std::min(wanted_[i].direct, p.direct)};
+    }
+}
+
+bool TilePace::fit(size_t round, double affordable, std::vector<RayPlan>& plan) const {
+    const auto suffices = [&](float shortage) {
+        plan_with(shortage, round, plan);
+        return rays(plan, round) <= affordable;
+    };
+    if (suffices(0.0f)) return false;
+    plan_with(least_shortage(suffices), round, plan);
+    for (bool changed = true; changed && rays(plan, round) > affordable;) {
+        changed = false;
+        for (size_t i = 0; i < plan.size(); ++i) {
+            if (Rounds{tiles_.size()}.of(i) < round) continue;
+            if (plan[i].gather > 8) plan[i].gather /= 2, changed = true;
+            if (plan[i].direct > 4) plan[i].direct /= 2, changed = true;
+        }
+    }
+    return true;
 }
 
 } // namespace ajar

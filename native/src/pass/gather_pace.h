@@ -9,7 +9,7 @@ namespace ajar {
 inline constexpr RayPlan kFirstRays = {64, 64};
 
 /// Keeps a final gather inside its time. A pilot predicts what a noise costs in rays, but not exactly, nor how long
-/// a ray takes; so the gather goes in rounds, and after each one the noise that the rest aims at follows the
+/// a ray takes; so the gather goes in rounds, and after each one the shortage of rays for the rest follows the
 /// pace so far.
 class GatherPace {
 public:
@@ -17,11 +17,11 @@ public:
     GatherPace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
                uint32_t receivers);
 
-    /// Plans the gather for seconds at the pilot's speed: raises goal.target above what it is, the noise that is
-    /// wanted, and lowers the first rays if even that is too much. True if it had to.
+    /// Plans the gather for seconds at the pilot's speed: sets goal.shortage, and lowers the first rays if even that
+    /// is too much. True if it had to. Fixed counts, goal.target 0, become the best that time allows.
     bool begin(double seconds, double seconds_per_ray, RayPlan& first, NoiseGoal& goal);
-    /// After some receivers took seconds_taken: the noise for the others, who have seconds_left. Never less than
-    /// is wanted. True if it is more.
+    /// After some receivers took seconds_taken: the shortage for the others, who have seconds_left. True if there
+    /// is any.
     bool follow(uint32_t receivers, double seconds_taken, double seconds_left, const RayPlan& first, NoiseGoal& goal);
 
 private:
@@ -34,8 +34,30 @@ private:
     std::vector<Tile> tiles_;
     double pilot_receivers_ = 0.0;
     uint32_t left_;
-    float wanted_ = 0.0f;
     double predicted_ = 0.0, taken_ = 0.0; ///< rays and seconds of what is done
+};
+
+/// The same for a gather that plans whole tiles before it starts.
+class TilePace {
+public:
+    /// pilot: [tiles][kPilotParts], measured with pilot_rays. wanted: [tiles] without a limit.
+    TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
+             const NoiseGoal& goal, std::vector<RayPlan> wanted);
+
+    /// Plans the tiles of the rounds from round on for so many rays, as plan_tiles() with the least shortage. True if
+    /// more are wanted.
+    bool fit(size_t round, double rays, std::vector<RayPlan>& plan) const;
+
+private:
+    void plan_with(float shortage, size_t round, std::vector<RayPlan>& plan) const;
+    /// Rays of the rounds from round on.
+    double rays(const std::vector<RayPlan>& plan, size_t round) const;
+
+    std::vector<MeasuredNoise> pilot_;
+    RayPlan pilot_rays_;
+    std::vector<Tile> tiles_;
+    NoiseGoal goal_;
+    std::vector<RayPlan> wanted_;
 };
 
 } // namespace ajar

@@ -49,6 +49,14 @@ Wanted rays_for(const MeasuredNoise& noise, const RayPlan& measured, double want
     return {growth * gather * sum / wanted, growth * direct * sum / wanted};
 }
 
+/// Variance that a place may have after measured rays told its noise.
+double allowed_variance(const MeasuredNoise& noise, const RayPlan& measured, const NoiseGoal& goal) {
+    const double level = double(noise.level) + goal.dark, aimed_at = double(goal.target) * level;
+    const double of_one_ray = std::sqrt(double(measured.gather) * noise.gather_variance) +
+                              std::sqrt(double(measured.direct) * noise.direct_variance);
+    return std::max(aimed_at * aimed_at, goal.shortage * of_one_ray * level);
+}
+
 /// Strata estimate of a place's variance with other rays than it was measured with.
 double variance_with(const MeasuredNoise& n, const RayPlan& measured, const RayPlan& rays, const NoiseModel& model) {
     const auto scaled = [](double v, double had, double has, double power) {
@@ -115,8 +123,7 @@ NoiseModel fit_noise_model(const std::vector<NoiseTrial>& trials, const RayPlan&
 RayPlan missing_rays(const MeasuredNoise& measured, const RayPlan& done, const NoiseGoal& goal) {
     if (!(goal.target > 0.0f)) return {};
     const MeasuredNoise noise = calibrated(measured, goal.model);
-    const double allowed = double(goal.target) * (noise.level + goal.dark), budget = allowed * allowed,
-                 first = variance(noise);
+    const double budget = allowed_variance(noise, done, goal), first = variance(noise);
     if (!(first > budget) || !std::isfinite(first)) return {};
     // Averaged by inverse variance, both answers together reach the budget.
     const Wanted wanted = rays_for(noise, done, std::max(budget * first / (first - budget), 1e-30), goal.model);
@@ -128,29 +135,30 @@ RayPlan missing_rays(const MeasuredNoise& measured, const RayPlan& done, const N
     return more;
 }
 
+RayPlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal) {
+    // Eight receivers are few: all parts of the tile pool with each.
+    const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
+        float sum = 0.0f;
+        for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
+        return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
+    };
+    double gather = 0.0, direct = 0.0;
+    for (size_t k = 0; k < kPilotParts; ++k) {
+        const MeasuredNoise noise = calibrated({parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
+                                                pooled(k, &MeasuredNoise::direct_variance)},
+                                               goal.model);
+        const double allowed = allowed_variance(noise, pilot_rays, goal) + 1e-30;
+        const Wanted wanted = rays_for(noise, pilot_rays, allowed, goal.model);
+        gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;
+    }
+    return {goal.gathers ? power_of_two(gather, 64, std::max(goal.most.gather, 64u)) : 0,
+            power_of_two(direct, std::min(16u, goal.most.direct), std::max(goal.most.direct, 1u))};
+}
+
 std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
                                 const NoiseGoal& goal) {
-    std::vector<RayPlan> plan(pilot.size() / kPilotParts);
-    for (size_t i = 0; i < plan.size(); ++i) {
-        const MeasuredNoise* parts = &pilot[i * kPilotParts];
-        // Eight receivers are few: all parts of the tile pool with each.
-        const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
-            float sum = 0.0f;
-            for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
-            return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
-        };
-        double gather = 0.0, direct = 0.0;
-        for (size_t k = 0; k < kPilotParts; ++k) {
-            const MeasuredNoise noise = calibrated({parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
-                                                    pooled(k, &MeasuredNoise::direct_variance)},
-                                                   goal.model);
-            const double allowed = double(goal.target) * (noise.level + goal.dark);
-            const Wanted wanted = rays_for(noise, pilot_rays, allowed * allowed + 1e-30, goal.model);
-            gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;
-        }
-        if (goal.gathers) plan[i].gather = power_of_two(gather, 64, std::max(goal.most.gather, 64u));
-        plan[i].direct = power_of_two(direct, std::min(16u, goal.most.direct), std::max(goal.most.direct, 1u));
-    }
+    std::vector<RayPlan> plan;
+    for (size_t i = 0; i < pilot.size(); i += kPilotParts) plan.push_back(plan_tile(&pilot[i], pilot_rays, goal));
     return plan;
 }
 

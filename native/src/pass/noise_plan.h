@@ -23,6 +23,10 @@ struct NoiseGoal {
     RayPlan most = {};   ///< per receiver
     bool gathers = true;
     NoiseModel model = {};
+    /// Above 0 where time is short: a place may then have this times its relative standard error with one ray as its
+    /// relative variance. So rays go as the standard errors of one, which makes the mean squared error the least that
+    /// a number of rays can (Neyman 1934); one noise for all would give the few noisiest places most of them.
+    float shortage = 0.0f;
 };
 
 /// Noise of one place with few and with many rays, and what two answers with many say of it.
@@ -47,8 +51,10 @@ bool is_trial(size_t tile, uint32_t part);
 /// averaged with the first one, weighed by share_of_more() (algorithms.md 10.3: one decision).
 RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal);
 
-/// Ray counts per tile that reach the goal by what the pilot found in the tiles' parts ([tiles][kPilotParts]),
-/// where whole tiles get the same (algorithms.md 10.3, 10.4).
+/// Ray counts that reach the goal by what the pilot found in a tile's parts ([kPilotParts]), where whole tiles get
+/// the same (algorithms.md 10.3, 10.4).
+RayPlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal);
+/// The same for all tiles, [tiles][kPilotParts].
 std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
                                 const NoiseGoal& goal);
 

@@ -79,8 +79,9 @@ private:
     std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
     std::vector<AimBox> doors_;
-    double pilot_pace_ = 0.0; ///< seconds per ray
-    MemoryBudget budget_;     ///< of the pass in hand
+    double pilot_pace_ = 0.0;        ///< seconds per ray
+    std::unique_ptr<TilePace> pace_; ///< where time is limited
+    MemoryBudget budget_;            ///< of the pass in hand
 };
 
 } // namespace ajar

@@ -222,6 +222,7 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     const NoiseGoal goal{settings_.noise_target, dark_level(pilot), most, gathers(),
                          fit_noise_model(trials, small, large)};
     if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
+    if (timed) pace_ = std::make_unique<TilePace>(std::move(pilot), small, s_.receivers.tiles, goal, plan);
     return plan;
 }
 

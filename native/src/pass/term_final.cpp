@@ -88,18 +88,15 @@ double TermBaker::time_left(double lights) const {
 /// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.
 void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile) {
     const std::vector<Tile>& tiles = s_.receivers.tiles;
-    const std::vector<RayPlan> wanted = plan;
     const Rounds rounds{tiles.size()};
     double rays = 0.0, taken = 0.0, receivers = 0.0;
     std::atomic<size_t> stored{0};
     for (size_t round = 0; round < rounds.count(); ++round) {
         const double start = progress_.elapsed();
-        for (size_t i = 0; i < plan.size(); ++i)
-            if (i % rounds.count() >= round) plan[i] = wanted[i];
         const double lights = round > 0 ? static_cast<double>(stored) / receivers * s_.receivers.count()
                                         : static_cast<double>(source_.entries.size());
         const double pace = rays > 0.0 ? taken / rays : pilot_pace_;
-        if (limit_time(plan, tiles, round, pace, kPlannedPart * time_left(lights))) result_.time_limited = true;
+        if (pace_->fit(round, kPlannedPart * time_left(lights) / pace, plan)) result_.time_limited = true;
         pool_.for_each(
             rounds.size(round), progress_, [&](size_t k) { stored += finish_tile(rounds.tile(round, k)); }, false);
         for (size_t k = 0; k < rounds.size(round); ++k) {
