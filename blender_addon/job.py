@@ -218,7 +218,8 @@ def _package_steps(job, package, report, keep_existing, overrides):
     folder = os.path.join(job.folder, "snapshot")
     yield from snapshot_steps(job, folder, layout, overrides)
     os.makedirs(os.path.dirname(package), exist_ok=True)
-    yield from job.run_worker(WorkerClient.bake(folder, package, report), 0.07, 1.0)
+    spent = time.monotonic() - job.status.started
+    yield from job.run_worker(WorkerClient.bake(folder, package, report, spent), 0.07, 1.0)
 
 
 def snapshot_steps(job, folder, layout, overrides=None):

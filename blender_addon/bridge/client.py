@@ -44,9 +44,11 @@ class WorkerClient:
         self._threads = [_start(self._read_events), _start(self._read_errors)]
 
     @classmethod
-    def bake(cls, directory, package, report, **options):
-        """Worker that bakes a snapshot directory into package (directory) and report (file)."""
-        return cls(["bake", directory, "--package", package, "--report", report], **options)
+    def bake(cls, directory, package, report, spent=0.0, **options):
+        """Worker that bakes a snapshot directory into package (directory) and report (file). spent: seconds of a
+        time limit that are gone already."""
+        arguments = ["bake", directory, "--package", package, "--report", report, "--spent", str(spent)]
+        return cls(arguments, **options)
 
     @classmethod
     def predict(cls, directory, **options):

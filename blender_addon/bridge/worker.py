@@ -2,7 +2,7 @@
 """Worker process: runs the engine apart from Blender (standard library only).
 
     python3 worker.py layout DIR
-    python3 worker.py bake DIR --package OUT_DIR --report REPORT.json
+    python3 worker.py bake DIR --package OUT_DIR --report REPORT.json [--spent SECONDS]
     python3 worker.py predict DIR
 
 Writes one JSON event per line to stdout (progress, warning, error, cancelled, done). A line
@@ -17,6 +17,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from pathlib import Path
 
 if not __package__:  # run as a file: its siblings are the package "bridge"
@@ -33,6 +34,7 @@ from .snapshot_io import Reader, SnapshotError, write_text_whole
 POLL_SECONDS = 0.1
 WISHES = "predict.json"  # beside a snapshot: settings by name
 DONE, FAILED, CANCELLED = 0, 1, 2
+LEAST_SHARE = 0.1  # of a time limit that the engine gets in any case
 
 
 class Host:
@@ -99,6 +101,7 @@ def layout(library, host, arguments):
 
 def bake(library, host, arguments):
     """The 'bake' command; returns the exit code."""
+    started = time.monotonic() - arguments.spent
     with Reader(arguments.directory, "snapshot") as reader:
         settings = fill_settings(library, reader.data.get("settings", {}))
         known = reader.data.get("warnings", [])
@@ -106,6 +109,7 @@ def bake(library, host, arguments):
         builder = build_scene(library, host, reader)
     if builder is None:
         return CANCELLED
+    settings.time_limit = time_left(settings.time_limit, time.monotonic() - started)
     job = abi.Handle()
     try:
         check(library, library.ajar_job_start(builder.scene, ctypes.byref(settings), ctypes.byref(job)))
@@ -115,6 +119,11 @@ def bake(library, host, arguments):
         return finish(library, host, job, arguments, known, extras)
     finally:
         library.ajar_job_release(ctypes.byref(job))
+
+
+def time_left(limit, spent):
+    """What the engine may take of a time limit for the whole bake, after seconds of layout and export. 0: no limit."""
+    return max(limit - spent, LEAST_SHARE * limit)
 
 
 def build_scene(library, host, reader):
@@ -264,6 +273,7 @@ def parse(arguments):
         if name == "bake":
             command.add_argument("--package", type=Path, required=True)
             command.add_argument("--report", type=Path)
+            command.add_argument("--spent", type=float, default=0.0, help="seconds of a time limit that are gone")
     return parser.parse_args(arguments)
 
 

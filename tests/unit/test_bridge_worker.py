@@ -98,13 +98,14 @@ def run(client, seconds=120):
     return events
 
 
-def bake(tmp_path, library, folder):
+def bake(tmp_path, library, folder, **options):
     return WorkerClient.bake(
         folder,
         tmp_path / "package",
         tmp_path / "report.json",
         python=sys.executable,
         environment={"AJAR_LIBRARY": str(library)},
+        **options,
     )
 
 
@@ -116,6 +117,14 @@ def test_bake(tmp_path, library):
     assert (tmp_path / "package" / manifest["pages"][0]["irradiance"]).is_file()
     report = json.loads((tmp_path / "report.json").read_text())
     assert {"culprit": "X", "text": "from before"} in report["warnings"]
+
+
+@pytest.mark.parametrize("limit, spent, least, most", [(100, 30, 65, 70), (100, 500, 9.9, 10.1), (0, 30, 0, 0)])
+def test_layout_and_export_count_for_the_time_limit(tmp_path, library, limit, spent, least, most):
+    folder = write_snapshot(tmp_path / "shot", time_limit=limit)
+    assert run(bake(tmp_path, library, folder, spent=spent))[-1]["event"] == "done"
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert least <= report["settings"]["time_limit"] <= most
 
 
 def long_bake(tmp_path, library):
