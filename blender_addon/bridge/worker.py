@@ -273,7 +273,9 @@ def parse(arguments):
         if name == "bake":
             command.add_argument("--package", type=Path, required=True)
             command.add_argument("--report", type=Path)
-            command.add_argument("--spent", type=float, default=0.0, help="seconds of a time limit that are gone")
+            command.add_argument(
+                "--spent", type=float, default=0.0, help="seconds of a time limit that are gone"
+            )
     return parser.parse_args(arguments)
 
 

@@ -107,7 +107,8 @@ TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
     EXPECT_TRUE(pace.fit(0, spent(noise, wanted).rays / 20.0, plan));
     const Spent own = spent(noise, plan);
     EXPECT_LE(own.rays, spent(noise, wanted).rays / 20.0);
-    for (even.target = goal.target; spent(noise, plan_tiles(noise, kPilot, even)).rays > own.rays;) even.target *= 1.01f;
+    for (even.target = goal.target; spent(noise, plan_tiles(noise, kPilot, even)).rays > own.rays;)
+        even.target *= 1.01f;
     EXPECT_LT(own.variance, 0.8 * spent(noise, plan_tiles(noise, kPilot, even)).variance);
 }
 

@@ -119,7 +119,9 @@ def test_bake(tmp_path, library):
     assert {"culprit": "X", "text": "from before"} in report["warnings"]
 
 
-@pytest.mark.parametrize("limit, spent, least, most", [(100, 30, 65, 70), (100, 500, 9.9, 10.1), (0, 30, 0, 0)])
+@pytest.mark.parametrize(
+    "limit, spent, least, most", [(100, 30, 65, 70), (100, 500, 9.9, 10.1), (0, 30, 0, 0)]
+)
 def test_layout_and_export_count_for_the_time_limit(tmp_path, library, limit, spent, least, most):
     folder = write_snapshot(tmp_path / "shot", time_limit=limit)
     assert run(bake(tmp_path, library, folder, spent=spent))[-1]["event"] == "done"

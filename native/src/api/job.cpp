@@ -6,6 +6,7 @@
 
 #include "encode/ahd.h"
 #include "pass/term_bake.h"
+#include "pass/twin_check.h"
 
 namespace ajar {
 
@@ -65,8 +66,10 @@ void Job::bake(Progress& progress) {
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
     const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress};
     const double store = settings_.time_limit > 0.0f || settings_.trial != 0 ? seconds_to_store(pool.size()) : 0.0;
-    output_.bake = scene.elements.empty() ? Baker(gather, settings_, pool, progress, store).run()
-                                          : TermBaker(gather, settings_, pool, progress, store).run();
+    ajar_settings passes = settings_;
+    passes.time_limit = time_for_passes(tracer, pool, progress);
+    output_.bake = scene.elements.empty() ? Baker(gather, passes, pool, progress, store).run()
+                                          : TermBaker(gather, passes, pool, progress, store).run();
     if (settings_.trial != 0) return predict(tracer, pool, progress, store);
     progress.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
@@ -77,6 +80,17 @@ void Job::bake(Progress& progress) {
     for (Warning& w : check_warnings(output_.check, scene.name)) output_.warnings.push_back(std::move(w));
 }
 
+/// The time limit less what the self-check will take, by a few of its points. 0: none.
+float Job::time_for_passes(const Tracer& tracer, ThreadPool& pool, Progress& progress) const {
+    constexpr uint32_t kOfPoints = 16;
+    if (!(settings_.time_limit > 0.0f) || settings_.trial != 0 || settings_.check_points < kOfPoints)
+        return settings_.time_limit;
+    ajar_settings few = settings_;
+    few.check_points /= kOfPoints;
+    const double check = kOfPoints * try_check(*scene_, tracer, few, pool, progress);
+    return static_cast<float>(std::max(settings_.time_limit - check, 0.1 * settings_.time_limit));
+}
+
 /// What a bake takes: the trial's own time, with the passes that it only tried a part of as long as all of them.
 void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store) {
     progress.begin_stage(AJAR_STAGE_POST, 1.0f);
@@ -84,9 +98,12 @@ void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, do
     double tried = 0.0;
     for (const uint32_t stage : {AJAR_STAGE_BOUNCES, AJAR_STAGE_GATHER}) tried += progress.stage_seconds(stage);
     const double store = seconds_to_store * (output_.receivers.count() + t.lights);
-    double seconds = progress.elapsed() - tried + t.bounces + t.gather + store;
-    if (settings_.time_limit > 0.0f) seconds = std::min<double>(seconds, settings_.time_limit);
+    const CheckTimes check = check_times(output_.receivers.tiles.size(), settings_.bounces,
+                                         progress.stage_seconds(AJAR_STAGE_DIRECT), t.bounces);
+    double seconds =
+        progress.elapsed() - tried + t.bounces + (1.0 + check.gather_part) * t.gather + check.source + store;
     if (settings_.check_points != 0) seconds += try_check(*scene_, tracer, settings_, pool, progress);
+    if (settings_.time_limit > 0.0f) seconds = std::min<double>(seconds, settings_.time_limit);
     output_.predicted_seconds = seconds;
 }
 

@@ -38,6 +38,7 @@ public:
 
 private:
     void bake(Progress& progress);
+    float time_for_passes(const Tracer& tracer, ThreadPool& pool, Progress& progress) const;
     void predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store);
 
     std::shared_ptr<const Snapshot> scene_;

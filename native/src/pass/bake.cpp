@@ -120,7 +120,6 @@ EmitterSet Baker::find_bright_texels() {
 }
 
 void Baker::find_source() {
-    const double start = progress_.elapsed();
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     if (settings_.bounces > 0 || settings_.keep_bounces != 0) direct_source();
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
@@ -138,7 +137,7 @@ void Baker::find_source() {
         set_radiance(result_.source);
     }
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
-    source_seconds_ = progress_.elapsed() - start;
+    source_end_ = progress_.elapsed();
 }
 
 BakeResult Baker::run() {

@@ -179,8 +179,11 @@ void Baker::final_gather() {
 }
 
 double Baker::time_left() const {
-    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count() -
-           source_seconds_ / TwinCheck::kSourcePart;
+    const CheckTimes check =
+        check_times(s_.receivers.tiles.size(), settings_.bounces, progress_.stage_seconds(AJAR_STAGE_DIRECT),
+                    progress_.stage_seconds(AJAR_STAGE_BOUNCES));
+    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count() - check.source -
+           check.gather_part * (settings_.time_limit - source_end_);
 }
 
 /// Every round takes tiles from all over the scene, so each takes about as long.

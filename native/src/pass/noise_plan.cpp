@@ -144,9 +144,9 @@ RayPlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const N
     };
     double gather = 0.0, direct = 0.0;
     for (size_t k = 0; k < kPilotParts; ++k) {
-        const MeasuredNoise noise = calibrated({parts[k].level, pooled(k, &MeasuredNoise::gather_variance),
-                                                pooled(k, &MeasuredNoise::direct_variance)},
-                                               goal.model);
+        const MeasuredNoise noise = calibrated(
+            {parts[k].level, pooled(k, &MeasuredNoise::gather_variance), pooled(k, &MeasuredNoise::direct_variance)},
+            goal.model);
         const double allowed = allowed_variance(noise, pilot_rays, goal) + 1e-30;
         const Wanted wanted = rays_for(noise, pilot_rays, allowed, goal.model);
         gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;

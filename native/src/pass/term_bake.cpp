@@ -205,7 +205,6 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
 }
 
 void TermBaker::find_source() {
-    const double start = progress_.elapsed();
     if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
@@ -214,7 +213,7 @@ void TermBaker::find_source() {
     radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
                               s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
-    source_seconds_ = progress_.elapsed() - start;
+    source_end_ = progress_.elapsed();
 }
 
 BakeResult TermBaker::run() {

@@ -68,8 +68,8 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
-    bool in_background_ = false;  ///< shows no progress of its own
-    double source_seconds_ = 0.0; ///< that find_source() took
+    bool in_background_ = false; ///< shows no progress of its own
+    double source_end_ = 0.0;    ///< s, when find_source() was done
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;

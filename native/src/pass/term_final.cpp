@@ -81,8 +81,11 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
 }
 
 double TermBaker::time_left(double lights) const {
+    const CheckTimes check =
+        check_times(s_.receivers.tiles.size(), settings_.bounces, progress_.stage_seconds(AJAR_STAGE_DIRECT),
+                    progress_.stage_seconds(AJAR_STAGE_BOUNCES));
     return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count()) -
-           source_seconds_ / TwinCheck::kSourcePart;
+           check.source - check.gather_part * (settings_.time_limit - source_end_);
 }
 
 /// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.
@@ -161,14 +164,16 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
             const size_t i = k * check.step();
             const Tile part = TwinCheck::part(s_.receivers.tiles[i], i);
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
-            const Estimate a = answer(i, plan[i], seed), b = answer(i, plan[i], hash_combine(seed, 1));
+            const Estimate second = answer(i, plan[i], seed);
             std::unique_ptr<const Estimate> third;
-            if (other != nullptr) third.reset(new Estimate(other->answer(i, plan[i], hash_combine(seed, 2))));
+            if (other != nullptr) third.reset(new Estimate(other->answer(i, plan[i], hash_combine(seed, 1))));
             for (uint32_t lane = 0; lane < part.count; ++lane) {
-                const float second = luminance(b.total(lane));
-                check.compare(k, part.first + lane,
-                              {luminance(a.total(lane)), second, third ? luminance(third->total(lane)) : second,
-                               0.5 * (a.total_variance(lane) + b.total_variance(lane))});
+                const uint32_t r = part.first + lane;
+                const double own = double{result_.total_error[r]} * result_.total_error[r];
+                const float twin = luminance(second.total(lane));
+                check.compare(k, r,
+                              {result_.total[r], twin, third ? luminance(third->total(lane)) : twin,
+                               0.5 * (own + second.total_variance(lane))});
             }
         },
         false);

@@ -19,7 +19,15 @@ std::vector<float> levels(const BakeResult& result) {
     return out;
 }
 
+size_t step_of(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTiles, 1, kMostStep); }
+
 } // namespace
+
+CheckTimes check_times(size_t tiles, uint32_t bounce_count, double direct, double bounces) {
+    constexpr double kAnswers = 2.0; // from the bake's source and from the other
+    const double checked = double{kPilotReceivers} / kTileReceivers / static_cast<double>(step_of(tiles));
+    return {bounce_count > 0 ? direct + bounces / TwinCheck::kSourcePart : 0.0, kAnswers * checked};
+}
 
 ajar_settings other_source_settings(ajar_settings settings) {
     settings.seed = hash_combine(settings.seed, kSaltTwin);
@@ -36,7 +44,7 @@ double source_rays_ratio(const ajar_settings& settings) {
 TwinCheck::TwinCheck(const LightmapReceivers& receivers, const BakeResult& result)
     : receivers_(receivers),
       result_(result),
-      step_(std::clamp<size_t>(receivers.tiles.size() / kLeastTiles, 1, kMostStep)),
+      step_(step_of(receivers.tiles.size())),
       dark_(dark_level(levels(result))),
       parts_(receivers.tiles.size() / step_) {}
 

@@ -49,6 +49,14 @@ private:
     std::vector<Part> parts_;
 };
 
+/// What the check of a bake's error takes beside the bake.
+struct CheckTimes {
+    double source = 0.0;      ///< s: another source has fewer bounce rays, but as many emitter samples
+    double gather_part = 0.0; ///< of the final gather, in further answers
+};
+/// direct, bounces: seconds that the bake's source took.
+CheckTimes check_times(size_t tiles, uint32_t bounce_count, double direct, double bounces);
+
 /// Settings of a bake that makes another source for one with these.
 ajar_settings other_source_settings(ajar_settings settings);
 /// Bounce rays of a bake with these settings over those of its other source.
