@@ -99,7 +99,7 @@ void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, do
     for (const uint32_t stage : {AJAR_STAGE_BOUNCES, AJAR_STAGE_GATHER}) tried += progress.stage_seconds(stage);
     const double store = seconds_to_store * (output_.receivers.count() + t.lights);
     const CheckTimes check = check_times(output_.receivers.tiles.size(), settings_.bounces,
-                                         progress.stage_seconds(AJAR_STAGE_DIRECT), t.bounces);
+                                         progress.stage_seconds(AJAR_STAGE_DIRECT) + t.bounces);
     double seconds =
         progress.elapsed() - tried + t.bounces + (1.0 + check.gather_part) * t.gather + check.source + store;
     if (settings_.check_points != 0) seconds += try_check(*scene_, tracer, settings_, pool, progress);

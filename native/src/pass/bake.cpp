@@ -45,7 +45,7 @@ void Baker::direct_source() {
             const Tile& tile = s_.receivers.tiles[i];
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
             DirectGroups groups(s_.emitters, LightRoles::all, {});
-            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kSourceSamples,
+            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, source_samples_,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
             auto direct = make_sums(false), gather = make_sums(false);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
@@ -61,7 +61,7 @@ void Baker::direct_source() {
             }
             share_quads(tile, *gather, current_);
             for (uint32_t lane = 0; lane < tile.count; ++lane)
-                current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(kSourceSamples);
+                current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(source_samples_);
             progress_.add_rays(rays);
         },
         !in_background_);

@@ -99,7 +99,8 @@ private:
     Progress& progress_;
     double seconds_to_store_;
     bool in_background_ = false; ///< shows no progress of its own
-    double source_end_ = 0.0;    ///< s, when find_source() was done
+    uint32_t source_samples_ = kSourceSamples;
+    double source_end_ = 0.0; ///< s, when find_source() was done
     BakeResult result_;
     NoiseGoal goal_;
     RayPlan first_;                    ///< rays of every receiver

@@ -179,9 +179,8 @@ void Baker::final_gather() {
 }
 
 double Baker::time_left() const {
-    const CheckTimes check =
-        check_times(s_.receivers.tiles.size(), settings_.bounces, progress_.stage_seconds(AJAR_STAGE_DIRECT),
-                    progress_.stage_seconds(AJAR_STAGE_BOUNCES));
+    const double source = progress_.stage_seconds(AJAR_STAGE_DIRECT) + progress_.stage_seconds(AJAR_STAGE_BOUNCES);
+    const CheckTimes check = check_times(s_.receivers.tiles.size(), settings_.bounces, source);
     return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count() - check.source -
            check.gather_part * (settings_.time_limit - source_end_);
 }
@@ -238,6 +237,7 @@ std::unique_ptr<Baker> Baker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<Baker>(s_, other_source_settings(settings_), pool_, progress_);
     other->in_background_ = true;
+    other->source_samples_ = kSourceSamples / TwinCheck::kSourcePart;
     other->first_ = first_, other->further_ = further_;
     other->find_source();
     return other;

@@ -106,7 +106,7 @@ void TermBaker::direct_source() {
             const Tile& tile = s_.receivers.tiles[i];
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
             DirectGroups groups(s_.emitters, LightRoles::all, all_sets_);
-            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, kSourceSamples, kUnseenSamples,
+            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
             TermSums direct(table_), gather(table_);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;

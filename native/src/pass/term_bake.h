@@ -69,7 +69,8 @@ private:
     Progress& progress_;
     double seconds_to_store_;
     bool in_background_ = false; ///< shows no progress of its own
-    double source_end_ = 0.0;    ///< s, when find_source() was done
+    uint32_t source_samples_ = kSourceSamples;
+    double source_end_ = 0.0; ///< s, when find_source() was done
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;

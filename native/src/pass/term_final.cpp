@@ -81,9 +81,8 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
 }
 
 double TermBaker::time_left(double lights) const {
-    const CheckTimes check =
-        check_times(s_.receivers.tiles.size(), settings_.bounces, progress_.stage_seconds(AJAR_STAGE_DIRECT),
-                    progress_.stage_seconds(AJAR_STAGE_BOUNCES));
+    const double source = progress_.stage_seconds(AJAR_STAGE_DIRECT) + progress_.stage_seconds(AJAR_STAGE_BOUNCES);
+    const CheckTimes check = check_times(s_.receivers.tiles.size(), settings_.bounces, source);
     return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count()) -
            check.source - check.gather_part * (settings_.time_limit - source_end_);
 }
@@ -146,6 +145,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
     other->in_background_ = true;
+    other->source_samples_ = kSourceSamples / TwinCheck::kSourcePart;
     try {
         other->find_source();
     } catch (const Error& e) {

@@ -23,10 +23,10 @@ size_t step_of(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTiles, 1,
 
 } // namespace
 
-CheckTimes check_times(size_t tiles, uint32_t bounce_count, double direct, double bounces) {
+CheckTimes check_times(size_t tiles, uint32_t bounce_count, double source) {
     constexpr double kAnswers = 2.0; // from the bake's source and from the other
     const double checked = double{kPilotReceivers} / kTileReceivers / static_cast<double>(step_of(tiles));
-    return {bounce_count > 0 ? direct + bounces / TwinCheck::kSourcePart : 0.0, kAnswers * checked};
+    return {bounce_count > 0 ? source / TwinCheck::kSourcePart : 0.0, kAnswers * checked};
 }
 
 ajar_settings other_source_settings(ajar_settings settings) {

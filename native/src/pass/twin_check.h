@@ -17,7 +17,7 @@ public:
     /// Tiles that are estimated twice: every step-th.
     size_t step() const { return step_; }
     size_t count() const { return parts_.size(); }
-    /// Part of a bake's bounce rays that make another source, of the light that its final gather reflects.
+    /// Part of a bake's rays that make another source, of the light that its final gather reflects.
     static constexpr uint32_t kSourcePart = 4;
 
     /// The receivers of tile i that are estimated twice: of one tile the first, of another the last.
@@ -51,11 +51,11 @@ private:
 
 /// What the check of a bake's error takes beside the bake.
 struct CheckTimes {
-    double source = 0.0;      ///< s: another source has fewer bounce rays, but as many emitter samples
+    double source = 0.0;      ///< s, another source
     double gather_part = 0.0; ///< of the final gather, in further answers
 };
-/// direct, bounces: seconds that the bake's source took.
-CheckTimes check_times(size_t tiles, uint32_t bounce_count, double direct, double bounces);
+/// source: seconds that the bake's own took.
+CheckTimes check_times(size_t tiles, uint32_t bounce_count, double source);
 
 /// Settings of a bake that makes another source for one with these.
 ajar_settings other_source_settings(ajar_settings settings);
