@@ -267,6 +267,96 @@ double many_sets(const Variant& v) {
     return most;
 }
 
+double sun_in_one_pixel(const Variant& v) {
+    Stage s(v);
+    const uint32_t page = s.object(kit::plane(2.0f, 0.0f), s.scene.diffuse({0, 0, 0}), 8);
+    constexpr uint32_t kWidth = 256, kHeight = 128, kRow = 100;
+    std::vector<float> sky(size_t{4} * kWidth * kHeight, 0.0f);
+    for (int c = 0; c < 3; ++c) sky[4 * (size_t{kRow} * kWidth + 37) + c] = 1e5f;
+    const auto light = static_cast<float>(v.light);
+    s.scene.sky_image(s.scene.texture(sky, kWidth, kHeight), {light, light, light});
+    s.scene.commit();
+    // Radiance times the integral of the sine of the elevation over the pixel's solid angle.
+    const auto square = [](uint32_t row) { return std::pow(std::sin(pi * (double(row) / kHeight - 0.5)), 2); };
+    const double expected = 1e5 * 2.0 * pi / kWidth * 0.5 * (square(kRow + 1) - square(kRow));
+    return worst(s.irradiance(kit::Bake(s.scene, s.settings(1, 256)), page), expected);
+}
+
+double identical_sets(const Variant& v) {
+    Stage s(v);
+    const uint32_t page = s.object(kit::plane(2.0f, 0.0f), s.scene.diffuse({0.5f, 0.5f, 0.5f}), 16);
+    for (const char* name : {"one", "other"}) {
+        s.scene.current_set = s.scene.element(AJAR_ELEMENT_LIGHT_SET, name);
+        s.point({0, 0, 2}, 10.0);
+    }
+    s.scene.commit();
+    const kit::Bake bake(s.scene, s.settings(0, 64));
+    if (bake.terms().size() != 3) return HUGE_VAL;
+    double most = 0.0;
+    for (const uint32_t term : {1u, 2u})
+        most = std::max(most, worst(s.term(bake, term, 16, page), [](uint32_t x, uint32_t y) {
+                            return from_point({0, 0, 2}, 10.0, texel(x, y, 16, 2.0f));
+                        }));
+    return most;
+}
+
+double inside_a_door(const Variant& v) {
+    // A leaf that stands in the floor: some receivers lie inside of it while it is there, others see it edge-on.
+    Stage s(v);
+    const uint32_t black = s.scene.diffuse({0, 0, 0}), page = s.object(kit::plane(2.0f, 0.0f), black, 16);
+    s.scene.current_switch = s.scene.element(AJAR_ELEMENT_DOOR, "door");
+    s.object(kit::box({-0.1f, -0.5f, -0.1f}, {0.1f, 0.5f, 1.5f}, false), black);
+    s.scene.current_switch = AJAR_NONE;
+    s.sky(1.0);
+    s.scene.commit();
+    const kit::Bake bake(s.scene, s.settings(1, 256));
+    if (bake.terms().size() != 2) return HUGE_VAL;
+    const Layer closed = s.term(bake, 0, 16, page), opened = s.term(bake, 1, 16, page);
+    if (!std::isfinite(largest(closed))) return HUGE_VAL;
+    Layer open = closed;
+    for (size_t i = 0; i < open.data.size(); ++i) open.data[i] += opened.data[i];
+    return worst(open, pi);
+}
+
+double gap_beside_a_door(const Variant& v) {
+    // The closed leaf leaves a gap of 1 cm: light of a sky that fills the slit, and no more.
+    Stage s(v);
+    const uint32_t black = s.scene.diffuse({0, 0, 0}), page = s.object(kit::plane(0.5f, 0.0f), black, 8);
+    kit::MeshData wall, leaf;
+    const auto facing_down = [](kit::MeshData& mesh, float x0, float y0, float x1, float y1) {
+        mesh.quad({x0, y0, 1}, {x0, y1, 1}, {x1, y1, 1}, {x1, y0, 1}, {0, 0}, {1, 1});
+    };
+    facing_down(wall, -4, -4, 0, 4);
+    facing_down(wall, 1, -4, 4, 4);
+    facing_down(wall, 0, -4, 1, -0.5f);
+    facing_down(wall, 0, 0.5f, 1, 4);
+    facing_down(leaf, 0.01f, -0.5f, 1, 0.5f);
+    s.object(wall, black);
+    s.object(kit::plane(8.0f, -0.5f), black);
+    for (const float side : {-1.0f, 1.0f}) { // no sky between wall and floor
+        kit::MeshData ends;
+        ends.quad({4 * side, -4, -1}, {4 * side, 4, -1}, {4 * side, 4, 1}, {4 * side, -4, 1}, {0, 0}, {1, 1});
+        ends.quad({-4, 4 * side, -1}, {4, 4 * side, -1}, {4, 4 * side, 1}, {-4, 4 * side, 1}, {0, 0}, {1, 1});
+        s.object(ends, black);
+    }
+    s.scene.current_switch = s.scene.element(AJAR_ELEMENT_DOOR, "door", false);
+    s.object(leaf, black);
+    s.scene.current_switch = AJAR_NONE;
+    s.sky(1.0);
+    s.scene.commit();
+    const Layer e = s.term(kit::Bake(s.scene, s.settings(1, 4096)), 0, 8, page);
+    double expected = 0.0;
+    constexpr int kCuts = 64;
+    for (uint32_t i = 0; i < 64; ++i) {
+        const Float3 p = texel(i % 8, i / 8, 8, 0.5f);
+        for (int k = 0; k < kCuts; ++k) { // both cosines are 1 / r
+            const double y = (k + 0.5) / kCuts - 0.5 - p[1], x = 0.005 - p[0], r2 = x * x + y * y + 1.0;
+            expected += 0.01 / kCuts / (r2 * r2) / 64.0;
+        }
+    }
+    return std::abs(mean(e) / expected - 1.0);
+}
+
 double dark_room(const Variant& v) {
     Stage s(v);
     const uint32_t page = s.object(kit::box({-1, -1, -1}, {1, 1, 1}, true), s.scene.diffuse({0.5f, 0.5f, 0.5f}), 16);
@@ -300,6 +390,12 @@ const Case kCases[] = {
     {"door flush with its wall", "light leaks around the closed leaf", "brightest closed / mean open", 1e-6,
      flush_door},
     {"20 sets on one texel", "terms get lost or mixed", "worst texel of a set", 0.05, many_sets},
+    {"sun in one pixel of the sky", "gather rays miss it: fireflies", "worst texel", 0.03, sun_in_one_pixel},
+    {"two identical sets", "one hides the other", "worst texel of a set", 0.05, identical_sets},
+    {"receivers inside a leaf, and in its plane", "no side to aim at: 0 / 0", "worst texel of the open state", 0.01,
+     inside_a_door},
+    {"gap of 1 cm beside a leaf", "leaf seen as its box: no light, or all", "mean light through the gap", 0.1,
+     gap_beside_a_door},
     {"no light", "0 / 0", "brightest texel, W/m^2", 0.0, dark_room},
 };
 

@@ -236,6 +236,15 @@ void Scene::sky(Float3 radiance) {
     check(ajar_scene_set_sky(scene_, &d));
 }
 
+void Scene::sky_image(uint32_t texture, Float3 radiance) {
+    ajar_sky_desc d;
+    ajar_sky_desc_init(&d);
+    d.type = AJAR_SKY_EQUIRECT;
+    d.texture = texture;
+    for (int i = 0; i < 3; ++i) d.color[i] = radiance[i];
+    check(ajar_scene_set_sky(scene_, &d));
+}
+
 void Scene::commit() { check(ajar_scene_commit(scene_)); }
 
 Bake::Bake(const Scene& scene, const ajar_settings& s) {

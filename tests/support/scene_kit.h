@@ -59,6 +59,8 @@ public:
     uint32_t current_switch = AJAR_NONE, current_set = AJAR_NONE;
     bool open_pose = false;
     void sky(Float3 radiance);
+    /// Equirectangular image (see ajar_sky_desc) times radiance.
+    void sky_image(uint32_t texture, Float3 radiance);
     void commit();
     ajar_scene handle() const { return scene_; }
 
