@@ -226,10 +226,21 @@ def finish(task, target):
         raise BatchError(task.status.message)
     if target is None:
         print(f"ajar: {task.status.message}", flush=True)
+        print_plan(manager.predicted)
         return DONE
     save(target, record, settings.PACKAGE, settings.REPORT)
     print(f"ajar: done: {target}", flush=True)
     return DONE
+
+
+def print_plan(found):
+    """What the bake would do, after a prediction."""
+    if found is None:
+        return
+    for preset, plan in ((name, found.plan(name)) for name in found.seconds):
+        print(f"ajar: {preset.capitalize()} would simulate", flush=True)
+        for line in plan:
+            print(f"ajar:   {line}", flush=True)
 
 
 def main():

@@ -22,6 +22,7 @@ from .extract import snapshot as snapshot_extract
 
 INTERVAL = 0.15  # seconds between steps in the user interface
 _SHOWN_ERRORS = ("estimated_rms", "p95", "target", "share_reached", "spread", "next_step")
+_LEAST_SHARE, _MOST_SHARES = 0.03, 4  # of a bake's time: effects that the panel names
 PATIENCE = 0.8  # seconds a worker has to stop when asked
 
 
@@ -276,9 +277,16 @@ def summarize(report, status):
         "rays": report.get("rays", {}).get("total", 0),
         "error": {name: error[name] for name in _SHOWN_ERRORS if name in error},
         "self_check": report.get("self_check", {}),
+        "time_shares": _largest_shares(report.get("effects", ())),
         "time_limited": bool(report.get("time_limited")),
         "warnings": [list(warning) for warning in status.warnings],
     }
+
+
+def _largest_shares(effects):
+    """[name, share] of the effects that took most of the time."""
+    shares = [[e["name"], e["time_share"]] for e in effects if e.get("time_share", 0.0) >= _LEAST_SHARE]
+    return sorted(shares, key=lambda entry: -entry[1])[:_MOST_SHARES]
 
 
 def _push_undo(message):

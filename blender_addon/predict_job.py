@@ -23,10 +23,33 @@ class Prediction:
     density: float  # texels per metre
     texels: int
     seconds: dict
+    plans: dict  # trial reports by preset: effects, predicted_stages, predicted_memory_parts
 
     def lines(self):
         """For people: 'Preview: about 2.1 min'."""
         return [f"{name.capitalize()}: about {duration(s)}" for name, s in self.seconds.items()]
+
+    def plan(self, preset):
+        """For people: what a bake would simulate and its share of the time, what it would skip and why, and the
+        memory of what it makes. Empty for a preset that was not tried."""
+        plan = self.plans.get(preset)
+        if plan is None:
+            return []
+        effects = plan["effects"]
+        skipped = [f"{e['name']} ({e['reason']})" for e in effects if e["status"] == "skipped"]
+        memory = sum(plan["predicted_memory_parts"].values()) / 1e6
+        return [
+            *(_simulated(e) for e in effects if e["status"] == "simulated"),
+            "Skipped: " + (", ".join(skipped) or "nothing"),
+            f"Memory of level and light: about {memory:.0f} MB",
+        ]
+
+
+def _simulated(effect):
+    share = effect.get("time_share")
+    return f"{effect['name'].capitalize()}: {effect['reason']}" + (
+        f", {share:.0%} of the time" if share else ""
+    )
 
 
 def predict_steps(job, overrides=None):
@@ -48,6 +71,8 @@ def predict_steps(job, overrides=None):
     yield from job.run_worker(worker, EXPORTED, 1.0)
     job.status.stage, job.status.fraction, job.status.remaining = "done", 1.0, 0.0
     seconds = {name: export + s for name, s in worker.outcome["predicted"].items()}
-    found = Prediction(job.link.scene().name, density, worker.outcome["texels"], seconds)
+    found = Prediction(
+        job.link.scene().name, density, worker.outcome["texels"], seconds, worker.outcome["plans"]
+    )
     jobs.manager.predicted = found
     job.status.message = f"{found.texels} texels. " + ", ".join(found.lines())

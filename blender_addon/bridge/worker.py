@@ -33,6 +33,7 @@ from .snapshot_io import Reader, SnapshotError, write_text_whole
 
 POLL_SECONDS = 0.1
 WISHES = "predict.json"  # beside a snapshot: settings by name
+PLAN = ("effects", "predicted_stages", "predicted_memory_parts")  # of a trial's report
 DONE, FAILED, CANCELLED = 0, 1, 2
 LEAST_SHARE = 0.1  # of a time limit that the engine gets in any case
 
@@ -155,13 +156,13 @@ class Part:
 
 def predict(library, host, arguments):
     """The 'predict' command: seconds that bakes of a snapshot would take, with the settings of each name in its
-    WISHES. Returns the exit code."""
+    WISHES, and what they would do. Returns the exit code."""
     wishes = json.loads((arguments.directory / WISHES).read_text(encoding="utf-8"))
     with Reader(arguments.directory, "snapshot") as reader:
         builder = build_scene(library, host, reader)
     if builder is None:
         return CANCELLED
-    seconds, texels = {}, 0
+    seconds, plans, texels = {}, {}, 0
     try:
         for number, (name, values) in enumerate(wishes.items()):
             settings = fill_settings(library, {**values, "trial": True})
@@ -169,9 +170,10 @@ def predict(library, host, arguments):
             if trial is None:
                 return CANCELLED
             seconds[name], texels = trial["predicted_seconds"], trial["texels"]
+            plans[name] = {key: trial[key] for key in PLAN}
     finally:
         builder.release()
-    host.send("done", predicted=seconds, texels=texels)
+    host.send("done", predicted=seconds, plans=plans, texels=texels)
     return DONE
 
 

@@ -61,6 +61,8 @@ def draw_prediction(layout, context):
     column.label(text=f"At {found.density:g} texels per metre, {found.texels} texels:")
     for line in found.lines():
         column.label(text=line)
+    for line in found.plan(context.scene.ajar.preset):
+        draw_text(column, line, "DOT", context)
 
 
 def draw_last_bake(layout, context):
@@ -74,6 +76,9 @@ def draw_last_bake(layout, context):
         return
     column = layout.column(align=True)
     column.label(text=f"{bake.get('preset', '').capitalize()} in {_duration(bake.get('seconds', 0.0))}")
+    shares = ", ".join(f"{name} {share:.0%}" for name, share in bake.get("time_shares", ()))
+    if shares:
+        draw_text(column, f"Time: {shares}", "TIME", context)
     if bake.get("time_limited"):
         column.label(text="Stopped by the time limit", icon="TIME")
     for line in _error_lines(bake.get("error", {})):

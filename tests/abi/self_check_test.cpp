@@ -100,6 +100,27 @@ TEST(Report, MemoryIsOnlyForWhatTheSceneCallsFor) {
     EXPECT_EQ(without.at("receivers"), with.at("receivers"));
 }
 
+std::map<std::string, nlohmann::json> effects_by_name(const nlohmann::json& report) {
+    std::map<std::string, nlohmann::json> out;
+    for (const auto& effect : report.at("effects")) out[effect.at("name")] = effect;
+    return out;
+}
+
+TEST(Report, SaysWhatTookTheTime) {
+    kit::Scene scene;
+    build_room(scene, true);
+    ajar_settings s = kit::settings(3, 4096);
+    const auto effects = effects_by_name(nlohmann::json::parse(kit::Bake(scene, s).report()));
+    double sum = 0.0;
+    for (const auto& [name, effect] : effects) {
+        EXPECT_TRUE(effect.at("status") == "simulated" || !effect.contains("time_share")) << name;
+        sum += effect.value("time_share", 0.0);
+    }
+    EXPECT_GT(effects.at("bounces").at("time_share").get<double>(), 0.1);
+    EXPECT_GT(sum, 0.3);
+    EXPECT_LE(sum, 1.0 + 1e-9);
+}
+
 TEST(Trial, PredictsATimeAndHoldsNoLight) {
     for (const bool set : {false, true}) {
         kit::Scene scene;
@@ -111,6 +132,20 @@ TEST(Trial, PredictsATimeAndHoldsNoLight) {
         const nlohmann::json report = nlohmann::json::parse(trial.report());
         EXPECT_GT(report.at("predicted_seconds").get<double>(), 0.0);
         EXPECT_GT(report.at("texels").get<int>(), 1000);
+        const auto planned = effects_by_name(report);
+        EXPECT_EQ(planned.at("light sets").at("status"), set ? "simulated" : "skipped");
+        EXPECT_EQ(planned.at("doors").at("status"), "skipped");
+        EXPECT_EQ(planned.at("bounces").at("status"), "simulated");
+        s.trial = 0;
+        const nlohmann::json done = nlohmann::json::parse(kit::Bake(scene, s).report());
+        for (const auto& [name, effect] : effects_by_name(done))
+            EXPECT_EQ(effect.at("status"), planned.at(name).at("status")) << name;
+        for (const char* part : {"scene", "receivers", "light", "pages"}) {
+            const double held = done.at("memory_parts").at(part),
+                         expected = report.at("predicted_memory_parts").at(part);
+            EXPECT_NEAR(expected / held, 1.0, 0.1) << part;
+        }
+        EXPECT_EQ(report.at("predicted_memory_parts").at("terms").get<int>() > 0, set);
         uint32_t width = 0, height = 0, channels = 0, count = 0;
         EXPECT_EQ(ajar_job_layer_size(trial.handle(), 0, AJAR_LAYER_IRRADIANCE, &width, &height, &channels),
                   AJAR_ERROR_STATE);

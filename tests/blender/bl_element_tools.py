@@ -206,6 +206,7 @@ def test_last_bake_says_what_it_knows():
             "preset": "preview",
             "seconds": 61.0,
             "time_limited": True,
+            "time_shares": [["doors", 0.31], ["sky", 0.2]],
             "error": {
                 "estimated_rms": 0.04,
                 "p95": 0.09,
@@ -219,7 +220,16 @@ def test_last_bake_says_what_it_knows():
         },
     )
     drawn = " ".join(draw(panel("AJAR_PT_sidebar_last")))
-    for said in ("time limit", "4.0%", "±40%", "50% of texels", "4 min 0 s", "99.0%", "Lamp: gives no light"):
+    for said in (
+        "time limit",
+        "4.0%",
+        "±40%",
+        "50% of texels",
+        "4 min 0 s",
+        "99.0%",
+        "Lamp: gives no light",
+        "sky 20%",
+    ):
         assert said in drawn, (said, drawn)
 
 

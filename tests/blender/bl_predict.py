@@ -32,6 +32,10 @@ def check_times(scene):
     assert found.scene == scene.name and found.density == 2.0 and found.texels > 100, found
     assert "AjarLightmap" not in bpy.data.meshes["Room"].uv_layers
     assert scene.objects["Room"].ajar.lightmap_page == -1 and not scene.ajar.preview
+    plan = found.plan(scene.ajar.preset)
+    assert any(line.startswith("Bounces: ") and "of the time" in line for line in plan), plan
+    assert any(line.startswith("Skipped: ") and "doors (the scene has none)" in line for line in plan), plan
+    assert plan[-1].startswith("Memory of level and light"), plan
     assert "Production: about" in job.manager.last.message, job.manager.last.message
 
 

@@ -283,6 +283,12 @@ def test_predictions_for_several_settings(tmp_path, library):
     assert events[-1]["event"] == "done", events[-1]
     assert list(events[-1]["predicted"]) == ["A", "B"] and events[-1]["texels"] > 1000
     assert all(seconds > 0.0 for seconds in events[-1]["predicted"].values())
+    plan = events[-1]["plans"]["B"]
+    assert {e["name"]: e["status"] for e in plan["effects"]}["sky"] == "simulated"
+    assert (
+        plan["predicted_memory_parts"]["pages"] > 64 * 64 * 4 and plan["predicted_memory_parts"]["terms"] == 0
+    )
+    assert sum(plan["predicted_stages"].values()) == pytest.approx(events[-1]["predicted"]["B"], rel=0.5)
     shares = [e["fraction"] for e in events if e["event"] == "progress"]
     assert shares == sorted(shares) and shares[-1] == 1.0
 

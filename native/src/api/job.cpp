@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <numeric>
 
 #include "encode/ahd.h"
 #include "pass/term_bake.h"
@@ -45,7 +46,14 @@ void warn_of_lateness(const ajar_settings& settings, double seconds, const std::
 } // namespace
 
 Job::Job(std::shared_ptr<const Snapshot> scene, const ajar_settings& settings)
-    : scene_(std::move(scene)), settings_(settings), task_([this](Progress& progress) { bake(progress); }) {}
+    : scene_(std::move(scene)), settings_(settings), task_([this](Progress& progress) { watch(progress); }) {}
+
+void Job::watch(Progress& progress) {
+    const WorkClock clock(progress);
+    const Working here(progress.job(), Effect::rest);
+    bake(progress);
+    output_.work = clock.counts();
+}
 
 void Job::bake(Progress& progress) {
     ThreadPool pool(settings_.threads);
@@ -95,16 +103,17 @@ float Job::time_for_passes(const Tracer& tracer, ThreadPool& pool, Progress& pro
 void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store) {
     progress.begin_stage(AJAR_STAGE_POST, 1.0f);
     const TrialTimes& t = output_.bake.trial;
-    double tried = 0.0;
-    for (const uint32_t stage : {AJAR_STAGE_BOUNCES, AJAR_STAGE_GATHER}) tried += progress.stage_seconds(stage);
-    const double store = seconds_to_store * (output_.receivers.count() + t.lights);
-    const CheckTimes check = check_times(output_.receivers.tiles.size(), settings_.bounces,
-                                         progress.stage_seconds(AJAR_STAGE_DIRECT) + t.bounces);
-    double seconds =
-        progress.elapsed() - tried + t.bounces + (1.0 + check.gather_part) * t.gather + check.source + store;
+    auto& stages = output_.prediction.stages;
+    for (uint32_t i = 0; i < AJAR_STAGE_COUNT; ++i) stages[i] = progress.stage_seconds(i);
+    const CheckTimes check =
+        check_times(output_.receivers.tiles.size(), settings_.bounces, stages[AJAR_STAGE_DIRECT] + t.bounces);
+    stages[AJAR_STAGE_BOUNCES] = t.bounces;
+    stages[AJAR_STAGE_GATHER] = (1.0 + check.gather_part) * t.gather + check.source;
+    stages[AJAR_STAGE_ENCODE] = seconds_to_store * (output_.receivers.count() + t.lights);
+    double seconds = std::accumulate(stages.begin(), stages.end(), 0.0);
     if (settings_.check_points != 0) seconds += try_check(*scene_, tracer, settings_, pool, progress);
     if (settings_.time_limit > 0.0f) seconds = std::min<double>(seconds, settings_.time_limit);
-    output_.predicted_seconds = seconds;
+    output_.prediction.seconds = seconds;
 }
 
 const JobOutput& Job::output() const {
@@ -116,7 +125,7 @@ const JobOutput& Job::output() const {
 
 std::string Job::report() const {
     task_.require_success();
-    return settings_.trial != 0 ? make_trial_report(scene_->name, output_, settings_) : make_report(*this);
+    return settings_.trial != 0 ? make_trial_report(*this, output_) : make_report(*this);
 }
 
 void check_cpu() {

@@ -7,6 +7,7 @@
 
 #include "api/self_check.h"
 #include "api/task.h"
+#include "base/work_clock.h"
 
 namespace ajar {
 
@@ -19,7 +20,12 @@ struct JobOutput {
     uint32_t emissive_triangles = 0;
     bool sky_sampled = false;
     SelfCheck check;
-    double predicted_seconds = 0.0; ///< of a trial
+    WorkClock::Counts work{};
+    /// Of a trial: what its bake would take, s.
+    struct Prediction {
+        double seconds = 0.0;
+        std::array<double, AJAR_STAGE_COUNT> stages{};
+    } prediction;
 };
 
 /// One bake on its own thread: runs the stages in order and keeps what came out.
@@ -37,6 +43,7 @@ public:
     std::string report() const;
 
 private:
+    void watch(Progress& progress);
     void bake(Progress& progress);
     float time_for_passes(const Tracer& tracer, ThreadPool& pool, Progress& progress) const;
     void predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, double seconds_to_store);
@@ -49,8 +56,8 @@ private:
 
 /// Report of a finished job as JSON (schemas/report.schema.json).
 std::string make_report(const Job& job);
-/// That of a trial: its settings, texels and predicted_seconds.
-std::string make_trial_report(const std::string& scene, const JobOutput& output, const ajar_settings& settings);
+/// That of a trial: its settings, and what the bake would do and take.
+std::string make_trial_report(const Job& job, const JobOutput& output);
 
 /// Throws Error(AJAR_ERROR_CPU) where the kernels' instructions are missing.
 void check_cpu();

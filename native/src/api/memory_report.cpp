@@ -45,10 +45,28 @@ uint64_t page_bytes(const BakedPages& p) {
 
 } // namespace
 
-std::vector<std::pair<const char*, uint64_t>> memory_parts(const Snapshot& scene, const JobOutput& o) {
+MemoryParts memory_parts(const Snapshot& scene, const JobOutput& o) {
     return {{"scene", scene_bytes(scene)},  {"receivers", receiver_bytes(o.receivers)},
             {"light", light_bytes(o.bake)}, {"spherical_harmonics_layers", bytes(o.bake.sh_rgb, o.pages.sh_rgb)},
             {"terms", term_bytes(o)},       {"pages", page_bytes(o.pages)}};
+}
+
+MemoryParts predicted_memory_parts(const Snapshot& scene, const JobOutput& o, const ajar_settings& settings) {
+    constexpr uint64_t kSh = kShCount * sizeof(float), kShRgb = 3 * kSh;
+    // Irradiance, source and spherical harmonics; standard error, samples and share inside.
+    constexpr uint64_t kReceiver = 2 * sizeof(Vec3) + kSh + 3 * sizeof(float);
+    // Irradiance and albedo; standard error, samples, validity, packed irradiance and direction.
+    constexpr uint64_t kTexel = 2 * sizeof(Vec3) + 5 * 4;
+    constexpr uint64_t kLight = sizeof(TermLight) + sizeof(uint32_t) + sizeof(Vec3) + sizeof(uint32_t);
+    const uint64_t receivers = o.receivers.count(), texels = scene.texel_count();
+    const uint64_t sh = settings.keep_sh != 0 ? kShRgb * (receivers + texels) : 0;
+    const uint64_t bounces = settings.keep_bounces != 0 ? (settings.bounces + 1) * sizeof(Vec3) : 0;
+    return {{"scene", scene_bytes(scene)},
+            {"receivers", receiver_bytes(o.receivers)},
+            {"light", receivers * (kReceiver + bounces)},
+            {"spherical_harmonics_layers", sh},
+            {"terms", static_cast<uint64_t>(o.bake.trial.lights * kLight)},
+            {"pages", texels * (kTexel + bounces)}};
 }
 
 } // namespace ajar

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "api/effects.h"
 #include "api/job.h"
 #include "api/memory_report.h"
 #include "pass/bake_parts.h"
@@ -85,42 +86,6 @@ json bounces_json(const Job& job, const JobOutput& o) {
         {"count", job.settings().bounces}, {"means", means}, {"last_share", total > 0.0 ? means.back() / total : 0.0}};
 }
 
-json effect(const char* name, bool used, const std::string& why) {
-    return {{"name", name}, {"status", used ? "simulated" : "skipped"}, {"reason", why}};
-}
-
-json element_effect(const Snapshot& s, ElementKind kind, const char* name) {
-    const auto count =
-        std::count_if(s.elements.begin(), s.elements.end(), [&](const Element& e) { return e.kind == kind; });
-    return effect(name, count != 0, count != 0 ? std::to_string(count) : "the scene has none");
-}
-
-json effects_json(const Snapshot& s, const JobOutput& o, const ajar_settings& settings) {
-    size_t primary = 0, transmissive = 0, unmapped = 0, lit = 0;
-    for (const Light& l : s.lights) primary += l.primary && !l.dark(), lit += !l.dark();
-    for (const Material& m : s.materials) transmissive += m.transmits;
-    for (const Instance& i : s.instances) unmapped += !i.lightmapped;
-    const auto combinations = std::count_if(o.pages.terms.begin(), o.pages.terms.end(),
-                                            [](const BakedTerm& t) { return t.elements.size() > 1; });
-    const auto n = [](size_t v) { return std::to_string(v); };
-    return {effect("primary lights", primary != 0, n(primary) + " lamps"),
-            effect("static lights", lit != primary, n(lit - primary) + " lamps"),
-            effect("emissive surfaces", o.emissive_triangles != 0, n(o.emissive_triangles) + " triangles"),
-            effect("sky", s.sky.lit(),
-                   !s.sky.lit()    ? "no sky or black"
-                   : o.sky_sampled ? "image, importance sampled"
-                                   : "constant"),
-            effect("transparency", transmissive != 0, n(transmissive) + " materials"),
-            effect("surfaces without lightmap", unmapped != 0, n(unmapped) + " objects"),
-            effect("aiming at bright texels", o.bake.bright_texels != 0, n(o.bake.bright_texels) + " texels"),
-            element_effect(s, ElementKind::light_set, "light sets"),
-            element_effect(s, ElementKind::door, "doors"),
-            element_effect(s, ElementKind::toggle, "toggles"),
-            effect("combinations of elements", combinations != 0, n(static_cast<size_t>(combinations)) + " terms"),
-            effect("bounces", settings.bounces != 0, n(settings.bounces) + " bounces"),
-            effect("seam stitching", o.pages.seam_points != 0, n(o.pages.seam_points) + " seam points")};
-}
-
 /// Light of every product of elements: where it is kept, how exact it is, what was left out.
 json terms_json(const Snapshot& s, const BakedPages& pages) {
     json terms = json::array();
@@ -152,10 +117,16 @@ json check_json(const SelfCheck& c) {
             {"bounce_gain", c.bounce_gain}, {"seconds", c.seconds}};
 }
 
-json memory_json(const Job& job, const JobOutput& o) {
+json memory_json(const MemoryParts& bytes_of) {
     json parts = json::object();
-    for (const auto& [name, bytes] : memory_parts(job.scene(), o)) parts[name] = bytes;
+    for (const auto& [name, bytes] : bytes_of) parts[name] = bytes;
     return parts;
+}
+
+std::array<double, AJAR_STAGE_COUNT> stage_seconds(const Job& job) {
+    std::array<double, AJAR_STAGE_COUNT> seconds{};
+    for (uint32_t s = 0; s < AJAR_STAGE_COUNT; ++s) seconds[s] = job.progress().stage_seconds(s);
+    return seconds;
 }
 
 uint64_t peak_memory() {
@@ -184,23 +155,31 @@ std::string make_report(const Job& job) {
         {"error", error_json(job, o)},
         {"bounces", bounces_json(job, o)},
         {"time_limited", o.bake.time_limited},
-        {"effects", effects_json(job.scene(), o, job.settings())},
+        {"effects", effects_json(job, o, stage_seconds(job))},
         {"terms", terms_json(job.scene(), o.pages)},
         {"warnings", warnings},
         {"memory_bytes", peak_memory()},
-        {"memory_parts", memory_json(job, o)}};
+        {"memory_parts", memory_json(memory_parts(job.scene(), o))}};
     if (job.settings().check_points != 0) report["self_check"] = check_json(o.check);
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 
-std::string make_trial_report(const std::string& scene, const JobOutput& output, const ajar_settings& settings) {
-    const json report = {{"version", 1},
-                         {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT},
-                         {"name", scene},
-                         {"result", "trial"},
-                         {"settings", settings_json(settings)},
-                         {"texels", output.receivers.count()},
-                         {"predicted_seconds", output.predicted_seconds}};
+std::string make_trial_report(const Job& job, const JobOutput& o) {
+    json stages = json::object();
+    for (uint32_t s = AJAR_STAGE_RECEIVERS; s < AJAR_STAGE_DONE; ++s)
+        stages[ajar_stage_name(s)] = o.prediction.stages[s];
+    const json report = {
+        {"version", 1},
+        {"generator", std::string("Ajar ") + AJAR_VERSION_TEXT},
+        {"name", job.scene().name},
+        {"result", "trial"},
+        {"settings", settings_json(job.settings())},
+        {"texels", o.receivers.count()},
+        {"predicted_seconds", o.prediction.seconds},
+        {"predicted_stages", stages},
+        {"predicted_light_records", std::llround(o.bake.trial.lights)},
+        {"predicted_memory_parts", memory_json(predicted_memory_parts(job.scene(), o, job.settings()))},
+        {"effects", effects_json(job, o, o.prediction.stages)}};
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 

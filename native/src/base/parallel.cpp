@@ -9,6 +9,8 @@
 #include <atomic>
 #include <thread>
 
+#include "base/work_clock.h"
+
 namespace ajar {
 
 namespace {
@@ -35,9 +37,12 @@ ThreadPool::~ThreadPool() = default;
 void ThreadPool::for_each(size_t count, Progress& progress, const std::function<void(size_t)>& body, bool report) {
     std::atomic<size_t> done{0};
     progress.check_cancel();
+    const Effect effect = Worker::mine().effect();
+    const Working waits(0, effect);
     const auto one = [&](size_t i) {
         if (progress.cancelled()) return;
         flush_denormals();
+        const Working here(progress.job(), effect);
         body(i);
         const size_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
         if (report) progress.update(static_cast<float>(finished) / static_cast<float>(count));

@@ -13,6 +13,11 @@ double seconds_since(Progress::Clock::time_point then) {
 
 } // namespace
 
+uint32_t Progress::next_job() {
+    static std::atomic<uint32_t> last{0};
+    return last.fetch_add(1, std::memory_order_relaxed) % 0xffffff + 1;
+}
+
 void Progress::start() {
     start_ = stage_start_ = Clock::now();
     stage_.store(AJAR_STAGE_IDLE, std::memory_order_relaxed);

@@ -31,6 +31,8 @@ public:
         if (cancelled()) throw Cancelled{};
     }
 
+    /// Number that tells this job from others, never 0.
+    uint32_t job() const { return job_; }
     uint32_t stage() const { return stage_.load(std::memory_order_relaxed); }
     float fraction() const { return fraction_.load(std::memory_order_relaxed); }
     uint64_t rays() const { return rays_.load(std::memory_order_relaxed); }
@@ -44,6 +46,8 @@ private:
     std::atomic<float> fraction_{0.0f};
     std::atomic<uint64_t> rays_{0};
     std::array<std::atomic<double>, AJAR_STAGE_COUNT> seconds_{};
+    const uint32_t job_ = next_job();
+    static uint32_t next_job();
     float stage_begin_ = 0.0f, stage_end_ = 0.0f;
     Clock::time_point start_ = Clock::now(), stage_start_ = Clock::now();
 };

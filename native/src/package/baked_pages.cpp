@@ -78,8 +78,10 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
 
 void Assembler::fill(ThreadPool& pool, Progress& progress) {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
-    if (!result.terms.terms.empty())
+    if (!result.terms.terms.empty()) {
+        const Working here(bookkeeping_effect(scene.elements));
         out.terms = make_terms(scene, receivers, result.terms, usable, solver.get(), pool, progress);
+    }
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
         if (source[i] == i) continue;

@@ -26,6 +26,7 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       progress_(progress),
       seconds_to_store_(seconds_to_store),
       limits_{order_of(settings.combinations)},
+      bookkeeping_(bookkeeping_effect(scene.scene.elements)),
       budget_(settings.memory_limit, "light sets, doors and toggles", scene.scene.name) {
     for (uint32_t e = 0; e < s_.scene.elements.size(); ++e)
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
@@ -36,6 +37,7 @@ bool TermBaker::gathers() const {
 }
 
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) {
+    const Working here(bookkeeping_);
     TileRows rows;
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
     const TermIndex gathered(gather, rows.terms), sampled(direct != nullptr ? *direct : gather, rows.terms);
@@ -68,6 +70,7 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
 
 /// Ends a pass: its rows become the bounce in hand and part of the source of the final gather.
 void TermBaker::take(std::vector<TileRows>& tiles) {
+    const Working here(bookkeeping_);
     current_ = merge_tiles(tiles, table_);
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
@@ -224,6 +227,7 @@ BakeResult TermBaker::run() {
     final_gather(plan);
     if (settings_.trial != 0) return std::move(result_);
     calibrate_error(plan);
+    result_.source.reserve(s_.receivers.count());
     for (uint32_t r = 0; r < s_.receivers.count(); ++r) result_.source.push_back(source_.total(r));
     return std::move(result_);
 }

@@ -82,6 +82,7 @@ private:
     std::vector<AimBox> doors_;
     double pilot_pace_ = 0.0;        ///< seconds per ray
     std::unique_ptr<TilePace> pace_; ///< where time is limited
+    Effect bookkeeping_;             ///< what keeping terms apart counts as
     MemoryBudget budget_;            ///< of the pass in hand
 };
 

@@ -105,6 +105,7 @@ uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samp
     const float least = doors_.empty() ? 0.0f : kAimShare * indirect_light(tile);
     const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[tile.first]);
     uint64_t rays = 0;
+    const Working here(Effect::doors);
     for (const AimBox& door : doors_) {
         if (aims.count() == kMostAims) break;
         rays += aims.add(

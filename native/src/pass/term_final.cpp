@@ -18,6 +18,7 @@ struct FinalTile {
 };
 
 void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate& t, FinalTile& out) {
+    const Working here(bookkeeping_);
     out.terms = t.terms;
     out.kept.assign(t.terms.size(), 0.0);
     out.dropped.assign(t.terms.size(), 0.0);
@@ -50,6 +51,7 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
 }
 
 void TermBaker::join(std::vector<FinalTile>& tiles) {
+    const Working here(bookkeeping_);
     TermResult& out = result_.terms;
     for (const FinalTile& t : tiles) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
     std::sort(out.terms.begin(), out.terms.end());

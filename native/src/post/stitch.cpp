@@ -108,6 +108,7 @@ SeamSolver::~SeamSolver() = default;
 uint64_t SeamSolver::points() const { return system_->rows.size(); }
 
 void SeamSolver::solve(std::vector<Vec3>& value, bool may_be_negative) const {
+    const Working here(Effect::seams);
     std::vector<Vec3> x0(system_->texel.size());
     for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[system_->texel[i]];
     const std::vector<Vec3> change = system_->change(x0);

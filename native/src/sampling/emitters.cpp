@@ -75,6 +75,20 @@ void EmitterSet::split_by_element() {
     }
 }
 
+Effect EmitterSet::effect(uint32_t e) const {
+    switch (emitters_[e].kind) {
+        case Kind::lamp:
+            return is_primary(e) ? Effect::primary_lights : Effect::static_lights;
+        case Kind::cluster:
+            return Effect::emissive_surfaces;
+        case Kind::sky:
+            return Effect::sky;
+        case Kind::bright:
+            return Effect::bright_texels;
+    }
+    return Effect::rest;
+}
+
 uint32_t EmitterSet::set_of(uint32_t e) const {
     const Emitter& emitter = emitters_[e];
     if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].light_set;

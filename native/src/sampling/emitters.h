@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/work_clock.h"
 #include "sampling/alias_table.h"
 #include "sampling/emission_cells.h"
 #include "sampling/sky_sampler.h"
@@ -48,6 +49,8 @@ public:
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
     /// A lamp whose direct light is not stored.
     bool is_primary(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].primary; }
+    /// What sampling an emitter counts as.
+    Effect effect(uint32_t e) const;
     /// Light set of an emitter, or kNoElement.
     uint32_t set_of(uint32_t e) const;
     /// Emitters of a set, or those of none for kNoElement.

@@ -73,6 +73,7 @@ uint32_t LightChoice::place_of(const Candidate& c, const Tile& tile, const Vec2&
 LightChoice::Seen LightChoice::look(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                                     uint32_t candidate, uint32_t seed) const {
     const uint32_t emitter = candidates_[candidate].emitter, h0 = hash_combine(seed, ~candidate);
+    const Working here(emitters_.effect(emitter));
     Seen seen;
     for (uint32_t i = 0; i < kVisibilityRays; ++i) {
         const uint32_t h = hash_combine(seed, (candidate << 8) | i);
@@ -134,8 +135,10 @@ void LightChoice::find_variance(const std::vector<Seen>& seen) {
 
 uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t seed) {
     base_ = 0;
+    const Working here(choices_.empty() ? Effect::rest : emitters_.effect(choices_.front()));
     find_candidates(receivers, tile);
     if (candidates_.empty()) return 0;
+    Worker::mine().set(emitters_.effect(candidates_.front().emitter));
     const uint64_t rays = learn_visibility(tracer, receivers, tile, seed);
     rest_running_.clear();
     float rest = 0.0f;

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "base/work_clock.h"
 
 namespace ajar {
 
@@ -21,5 +24,8 @@ struct Element {
 
     bool is_switch() const { return kind != ElementKind::light_set; }
 };
+
+/// What keeping the light of these elements apart counts as: the first kind of three that there is.
+Effect bookkeeping_effect(const std::vector<Element>& elements);
 
 } // namespace ajar

@@ -3,6 +3,13 @@
 
 namespace ajar {
 
+Effect bookkeeping_effect(const std::vector<Element>& elements) {
+    const auto has = [&](ElementKind kind) {
+        return std::any_of(elements.begin(), elements.end(), [&](const Element& e) { return e.kind == kind; });
+    };
+    return has(ElementKind::light_set) ? Effect::light_sets : has(ElementKind::door) ? Effect::doors : Effect::toggles;
+}
+
 uint32_t Snapshot::ray_mask(const Triangle& t) const {
     const uint32_t visibility = instances[t.instance].visibility;
     const bool is_switch = instances[t.instance].element != kNoElement;

@@ -46,6 +46,7 @@ struct DirectSampler {
     bool mean = false;         ///< book means over the samples, not sums
     bool thrifty = false;
     uint64_t rays = 0;
+    Worker& worker = Worker::mine();
 
     void shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end);
     bool has_moved(uint32_t first) const;
@@ -78,6 +79,7 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
     float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
     const uint32_t emitter = group.choice.pick(local, u, chance);
+    worker.set(g.emitters.effect(emitter));
     // The samples of one emitter follow each other: they divide its first coordinate evenly among them, and
     // the sequence spreads the second and the positions over any few in a row.
     const Vec2 spread = owen_sobol(sample, h);
@@ -171,6 +173,7 @@ void DirectSampler<Sink>::shoot(ShadowPacket& packet, uint32_t first, uint32_t b
 
 template <class Sink>
 uint64_t DirectSampler<Sink>::run() {
+    const Working here(worker.effect());
     ShadowPacket packet{};
     for (uint32_t first = 0; first < tile.count; first += kLanes) {
         if (!packets.has(first)) continue;

@@ -26,6 +26,8 @@ struct Gatherer {
     float mis_gather; ///< rays over the hemisphere, per receiver
     uint64_t rays = 0;
     TileRays tile_rays;
+    Worker& worker = Worker::mine();
+    Effect own;      ///< what ordinary rays count as
     uint8_t special; ///< surfaces with such a flag take the long way
 
     /// Where a gather ray comes from.
@@ -58,10 +60,14 @@ struct Gatherer {
           sink(s),
           mis_gather(static_cast<float>(options.samples)),
           tile_rays(scene.receivers, t, options.share, options.seed),
+          own(s.has_texels()                            ? Effect::bounces
+              : scene.emitters.emissive_triangles() > 0 ? Effect::emissive_surfaces
+                                                        : Effect::sky),
           special(SurfaceTable::kTransmits | SurfaceTable::kUnmapped |
                   (options.emission ? SurfaceTable::kEmits : SurfaceTable::kPlain)) {}
 
     void run() {
+        const Working here(own);
         const uint32_t count = std::min(o.samples, StratifiedBatch::kRays);
         for (uint32_t begin = 0; begin < o.samples; begin += count) {
             g.progress.check_cancel();
@@ -74,6 +80,7 @@ struct Gatherer {
                         shoot(first, s, begin + s);
         }
         uint32_t sample = o.samples;
+        if (o.aims != nullptr) own = Effect::doors;
         for (uint32_t aim = 0; o.aims != nullptr && aim < o.aims->count(); ++aim)
             for (uint32_t s = 0; s < o.aims->rays(aim); ++s, ++sample)
                 for (uint32_t first = 0; first < tile.count; first += kLanes)
@@ -142,6 +149,7 @@ struct Gatherer {
             ++rays;
             shade(lane, f);
             sink.end_sample(lane, f.first + lane, f.sample, f.local);
+            worker.set(own);
         }
         sink.add_cosines(f.first, count, f.local);
         sink.end_packet(f.first, f.sample, f.local);
@@ -188,6 +196,7 @@ struct Gatherer {
             if (!moved.exists()) return true;
             Through there = through;
             if (there.condition.require(moved.presence.element, moved.presence.state)) {
+                worker.set(effect_of(g.scene, moved.presence));
                 const Ray ray{moved.origin, f.packet.direction(lane)};
                 ++rays;
                 walk(ray, g.tracer.intersect(ray, kMaskGather), there, {local, f.sample, f.local.weight[lane]},
@@ -207,6 +216,7 @@ struct Gatherer {
                 Ray part = ray;
                 if (hit.triangle != kMiss) part.tfar = hit.t;
                 g.tracer.all_switches(part, kMaskGatherSwitch, switches);
+                if (!switches.empty()) worker.set(effect_of(g.scene, g.scene.presence(switches.front().triangle)));
             }
             if (switches.empty() ? !end_segment(ray, hit, through, from, layers)
                                  : !pass_switches(ray, switches, 0, hit, through, from, layers))
@@ -276,6 +286,7 @@ struct Gatherer {
             stand_in(ray, hit, through, g.receivers.albedo[r], from, layer);
             return false;
         }
+        if ((f & SurfaceTable::kTransmits) != 0 && worker.effect() == own) worker.set(Effect::transparency);
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
         if (f & SurfaceTable::kEmits) emission(s.emission, ray, hit, through, from);
         if (mapped)
@@ -355,6 +366,7 @@ struct Gatherer {
     void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, uint32_t seed, int depth,
                   float cosine) {
         if (depth >= kMaxUnmapped || !(max_component(reflectance) > 0.0f)) return;
+        const Working here(Effect::unmapped_surfaces);
         Vec3 n = g.scene.geometric_normal(hit.triangle);
         if (hit.back) n = -n;
         const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n);

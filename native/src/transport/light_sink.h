@@ -5,6 +5,7 @@
 // scene pays only for what it has: one colour, colours per light set, or colours per product of
 // elements with the conditions that switchable surfaces put on a path.
 
+#include "base/work_clock.h"
 #include "transport/gather.h"
 
 namespace ajar {
@@ -125,6 +126,11 @@ private:
     bool all_combine_; ///< no element opts out
 };
 
+/// What light that meets a switchable surface counts as.
+inline Effect effect_of(const Snapshot& scene, const Presence& presence) {
+    return scene.elements[presence.element].kind == ElementKind::door ? Effect::doors : Effect::toggles;
+}
+
 /// Light that passes switchable surfaces: each is absent, or there and perhaps lets some through.
 template <class Sink, class Emit>
 void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_t next, typename Sink::Through through,
@@ -148,12 +154,16 @@ void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_
 template <class Sink, class Emit>
 void through_shadow(const Snapshot& scene, const Tracer& tracer, const Ray& ray, typename Sink::Through through,
                     Emit&& emit, bool crosses = true) {
-    if (tracer.has_transmissive()) through.color *= tracer.tint(ray);
+    if (tracer.has_transmissive()) {
+        const Working here(Effect::transparency);
+        through.color *= tracer.tint(ray);
+    }
     if (!(max_component(through.color) > 0.0f)) return;
     if constexpr (Sink::kSwitches)
         if (crosses) {
             thread_local std::vector<Hit> hits;
             tracer.all_switches(ray, kMaskShadowSwitch, hits);
+            if (!hits.empty()) Worker::mine().set(effect_of(scene, scene.presence(hits.front().triangle)));
             return through_switches<Sink>(scene, hits, 0, through, emit);
         }
     emit(through);
