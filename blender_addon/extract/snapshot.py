@@ -119,6 +119,8 @@ class _Extraction:
             self.warnings.add(obj.original.name, "has no faces: skipped")
             return
         mesh = self._meshes[mesh_id]
+        if self._is_listed(instance, mesh):
+            return
         placed = Placed(
             name,
             obj.original,
@@ -134,6 +136,18 @@ class _Extraction:
             placed.depsgraph = self.depsgraph
         self._choose_surface(instance, placed)
         self.placed.append(placed)
+
+    def _is_listed(self, instance, mesh):
+        """Blender lists curves, texts and the like twice: as themselves, then as the mesh that they become."""
+        source = instance.object.original
+        if not instance.is_instance or source.type == "MESH":
+            return False
+        return any(
+            p.source == source
+            and p.matrix == instance.matrix_world
+            and len(p.mesh.corner_vertex) == len(mesh.corner_vertex)
+            for p in self.placed
+        )
 
     def _choose_surface(self, instance, placed):
         obj = placed.source

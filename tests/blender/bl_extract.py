@@ -74,6 +74,9 @@ def test_objects():
     eye.hide_set(True)
     library = bpy.data.collections.new("Library")
     library.objects.link(bpy.data.objects.new("Part", quad_mesh("Part")))
+    sign = bpy.data.curves.new("Sign", "FONT")
+    sign.body = "I"
+    library.objects.link(bpy.data.objects.new("Sign", sign))
     add("Instancer", None, instance_type="COLLECTION", instance_collection=library)
     secret = bpy.data.collections.new("Secret")
     bpy.context.scene.collection.children.link(secret)
@@ -88,6 +91,7 @@ def test_objects():
     names = [i["name"] for i in shot.data["instances"]]
     assert not {"Hidden", "InSecret", "Empty mesh"} & set(names), names
     assert {"Unseen", "Eye", "Text"} <= set(names), names
+    assert sum("Text" in n for n in names) == 1 and sum("Sign" in n for n in names) == 1, names
     assert shot.instance("A")["mesh"] == shot.instance("B")["mesh"] == shot.instance("Unseen")["mesh"]
     assert shot.instance("A")["surface"] == "lightmap" and shot.instance("A")["lightmap_layer"] == 1
     assert shot.instance("A")["uv_scale"] == [0.5, 0.5]
