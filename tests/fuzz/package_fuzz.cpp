@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "package_fuzz.h"
 
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <vector>
 
 #include "../../native/runtime/terms_format.h"
@@ -62,28 +60,18 @@ void play(ajar_runtime runtime, const std::vector<uint8_t>& bytes) {
 } // namespace
 
 PackageFuzz::PackageFuzz(const std::string& seed) {
-    const fs::path memory = "/dev/shm";
-    std::string pattern =
-        ((fs::is_directory(memory) ? memory : fs::temp_directory_path()) / "ajar_fuzz_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("cannot make a folder");
-    folder_ = pattern;
-    for (const fs::directory_entry& f : fs::directory_iterator(seed)) fs::copy(f.path(), folder_);
-}
-
-PackageFuzz::~PackageFuzz() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
+    for (const fs::directory_entry& f : fs::directory_iterator(seed)) fs::copy(f.path(), folder_.path());
 }
 
 bool PackageFuzz::run(const uint8_t* data, size_t size) const {
     std::vector<uint8_t> bytes(data, data + size);
     mend_header(bytes);
     {
-        std::ofstream file(folder_ + "/terms.bin", std::ios::binary | std::ios::trunc);
+        std::ofstream file(folder_.path() + "/terms.bin", std::ios::binary | std::ios::trunc);
         file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     }
     ajar_runtime runtime = nullptr;
-    if (ajar_runtime_open(folder_.c_str(), &runtime) != AJAR_RUNTIME_OK) return false;
+    if (ajar_runtime_open(folder_.path().c_str(), &runtime) != AJAR_RUNTIME_OK) return false;
     play(runtime, bytes);
     ajar_runtime_release(&runtime);
     return true;

@@ -20,7 +20,7 @@ uint32_t samples_of(const LightChoice& choice, uint32_t most) {
 } // namespace
 
 DirectGroups::DirectGroups(const EmitterSet& emitters, LightRoles roles, const std::vector<uint32_t>& sets)
-    : emitters_(emitters), group_of_(emitters.count(), EmitterSet::kNone) {
+    : group_of_(emitters.count(), EmitterSet::kNone) {
     const auto add = [&](uint32_t set) {
         std::vector<uint32_t> members = emitters.of_set(set);
         for (const uint32_t e : members) group_of_[e] = static_cast<uint32_t>(groups_.size());

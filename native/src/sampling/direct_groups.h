@@ -48,7 +48,6 @@ public:
     float expected(uint32_t local, uint32_t emitter) const;
 
 private:
-    const EmitterSet& emitters_;
     std::vector<Group> groups_;
     std::vector<uint32_t> group_of_; ///< per emitter
 };
