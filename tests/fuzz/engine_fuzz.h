@@ -92,6 +92,7 @@ private:
     void read_term(ajar_job job, uint32_t term);
     void read_report(ajar_job job);
     void write_package(ajar_job job);
+    void open_package(const std::string& folder);
 
     // engine_fuzz_reference.cpp
     void reference_call();

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bakes and what is read of them.
+#include <filesystem>
+
+#include "ajar_runtime.h"
 #include "engine_fuzz.h"
 
 ajar_settings EngineFuzz::settings() {
@@ -68,10 +71,23 @@ void EngineFuzz::read_report(ajar_job job) {
     note(ajar_job_report(job, maybe(text.data()), &size));
 }
 
+/// What the engine writes, the run-time library must open.
+void EngineFuzz::open_package(const std::string& folder) {
+    if (!std::filesystem::exists(folder + "/terms.bin")) return; // nothing changes in it
+    ajar_runtime runtime = nullptr;
+    if (ajar_runtime_open(folder.c_str(), &runtime) != AJAR_RUNTIME_OK ||
+        ajar_runtime_update(runtime, nullptr) != AJAR_RUNTIME_OK)
+        broken_ = std::string("a package that the run-time library refuses: ") + ajar_runtime_error_message();
+    ajar_runtime_release(&runtime);
+}
+
 void EngineFuzz::write_package(ajar_job job) {
-    const std::string folder = chance(0.9) ? folder_ + "/package" : chance(0.5) ? "" : folder_ + "/package/sub/sub";
+    const std::string folder = folder_ + "/package";
+    const std::string others[] = {folder + "/sub/sub", "", folder + "/manifest.json"};
+    const std::string chosen = chance(0.9) ? folder : others[pick(std::size(others))];
     const char* const kExtras[] = {nullptr, "{}", "{\"a\":[1,null,\"b\"]}", "", "[1]", "{\"a\":", "\xff"};
-    note(ajar_job_write_package(job, maybe(folder.c_str()), kExtras[pick(std::size(kExtras))]));
+    if (note(ajar_job_write_package(job, maybe(chosen.c_str()), kExtras[pick(std::size(kExtras))])) == AJAR_OK)
+        open_package(chosen);
 }
 
 void EngineFuzz::read_job(ajar_job job) {
