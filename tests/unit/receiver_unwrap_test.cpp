@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <ctime>
+
 #include "layout_kit.h"
 
 namespace ajar {
@@ -77,6 +79,13 @@ TEST(ReceiverUnwrap, ConcavePolygonsKeepTheirNeighboursInTheNotch) {
     m.polygon({{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {2, 3, 0}, {2, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}});
     m.quad({1, 1, 0}, {1, 0, 0}, {0, 2, 0});
     EXPECT_EQ(unwrap(m.unwrap_input(8.0), 0.7, 1000.0).charts.size(), 1u);
+}
+
+TEST(ReceiverUnwrap, FacesThatAreLargerThanAPageTakeNoTime) {
+    const std::clock_t start = std::clock(); // each took a bitmap of 64 million samples
+    const Unwrapped u = unwrap(make_sphere(16).unwrap_input(1e6), 0.7, 100.0);
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 2.0);
+    EXPECT_GT(u.charts.size(), 100u);
 }
 
 TEST(ReceiverUnwrap, ChartsStayBelowTheLargestExtent) {

@@ -252,10 +252,21 @@ private:
     /// Keeps the connected part of a candidate that does not cover itself; the rest stays open.
     void place(const std::vector<uint32_t>& candidate) {
         GrownChart chart;
-        glm::dvec3 sum(0.0), u, v;
+        glm::dvec3 sum(0.0);
         for (uint32_t f : candidate) sum += face(f).normal * face(f).area;
         chart.axis = glm::length(sum) > 0.0 ? glm::normalize(sum) : face(candidate[0]).normal;
         if (glm::dot(chart.axis, face(candidate[0]).normal) < place_cos_) chart.axis = face(candidate[0]).normal;
+        chart.polygons.push_back(candidate[0]);
+        chart_of_[candidate[0]] = uint32_t(result_.charts.size());
+        // A polygon alone may be of any size: testing it would take a bitmap as large.
+        if (candidate.size() > 1) add_uncovered(candidate, chart);
+        for (uint32_t f : chart.polygons) open_[f] = 0;
+        result_.charts.push_back(std::move(chart));
+    }
+
+    /// Adds to the chart, which holds the candidate's first polygon, what is linked to it and covers none of it.
+    void add_uncovered(const std::vector<uint32_t>& candidate, GrownChart& chart) {
+        glm::dvec3 u, v;
         chart_frame(chart.axis, u, v);
         Box2 box;
         for (uint32_t f : candidate) box.add(project_box(f, u, v));
@@ -264,9 +275,7 @@ private:
                                        kMostColumns / std::max({size.x, size.y, 1.0})});
         BitRows covered(int(size.x * scale) + 2, int(size.y * scale) + 2);
 
-        for (uint32_t f : candidate) chart_of_[f] = kPending;
-        chart.polygons.push_back(candidate[0]);
-        chart_of_[candidate[0]] = uint32_t(result_.charts.size());
+        for (size_t i = 1; i < candidate.size(); ++i) chart_of_[candidate[i]] = kPending;
         cover(candidate[0], u, v, box.low, scale, covered);
         for (size_t next = 0; next < chart.polygons.size(); ++next)
             for (const FaceLink& link : graph_.links(chart.polygons[next])) {
@@ -279,8 +288,6 @@ private:
         if (chart.polygons.size() < candidate.size()) ++result_.overlap_splits;
         for (uint32_t f : candidate)
             if (chart_of_[f] == kPending) chart_of_[f] = kNone;
-        for (uint32_t f : chart.polygons) open_[f] = 0;
-        result_.charts.push_back(std::move(chart));
     }
 
     /// Marks the polygon's samples. False, and nothing marked, if a 2x2 block was covered before.
