@@ -10,12 +10,12 @@ ajar_settings EngineFuzz::settings() {
     ajar_settings_init(&s);
     s.struct_size = size_of(sizeof(s));
     s.bounces = chance(0.97) ? pick(4) : integer() | 0x1000u;
-    s.samples = cheap(8u << pick(3));
+    s.samples = cheap(8u << pick(4));
     s.bounce_samples = cheap(4u << pick(3));
     s.direct_samples = cheap(1 + pick(8));
     s.positions_per_texel = cheap(chance(0.9) ? 1 + pick(4) : 16);
-    s.noise_target = chance(0.7) ? 0.0f : scalar();
-    s.time_limit = chance(0.9) ? 0.0f : scalar();
+    s.noise_target = chance(0.6) ? 0.0f : chance(0.8) ? static_cast<float>(1 + pick(16)) / 64.0f : scalar();
+    if (chance(0.2)) s.time_limit = chance(0.8) ? static_cast<float>(1 + pick(8)) / 256.0f : scalar();
     s.seed = mostly(0, 0.8);
     s.threads = chance(0.97) ? 1 : integer() | 0x1000u;
     s.stitch_seams = pick(2);

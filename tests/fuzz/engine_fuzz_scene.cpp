@@ -14,7 +14,7 @@ void EngineFuzz::add_element(ajar_scene scene, uint32_t kind) {
     d.struct_size = size_of(sizeof(d));
     d.name = name();
     d.kind = mostly(kind, 0.97);
-    d.weight = chance(0.7) ? static_cast<float>(pick(5)) / 4.0f : scalar();
+    d.weight = chance(0.7) ? 1.0f - static_cast<float>(pick(5)) / 4.0f : scalar();
     d.combine = 1 - pick(2);
     d.bounce = 1 - pick(2);
     uint32_t id;
@@ -124,7 +124,7 @@ void EngineFuzz::room() {
     if (chance(0.4)) set_sky(scene);
     if (chance(0.9)) note(ajar_scene_commit(scene));
     if (chance(0.8)) start_job(scene);
-    if (chance(0.2)) start_reference(scene);
+    if (chance(0.3)) start_reference(scene);
 }
 
 void EngineFuzz::scene_call() {
