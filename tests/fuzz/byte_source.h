@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -44,6 +45,16 @@ public:
 
     /// A number of -2..2 and, at times, one that is harder to reckon with.
     float scalar() {
+        const float v = any_scalar();
+        const float size = std::abs(v);
+        if (!(size == 0.0f || (size > 1e-4f && size <= 2.0f))) wild_ = true;
+        return v;
+    }
+    /// True once a number was drawn that is not of the size of things in a room.
+    bool wild() const { return wild_; }
+
+private:
+    float any_scalar() {
         constexpr float kInfinity = std::numeric_limits<float>::infinity();
         constexpr float kOdd[] = {0.0f,  -0.0f, 1.0f,   -1.0f,     0.5f,       1e-45f,   1e-30f, 1e-6f,
                                   1e30f, 1e6f,  -1e30f, kInfinity, -kInfinity, -3.4e38f, 3.4e38f};
@@ -54,7 +65,6 @@ public:
         return (byte() + byte() / 256.0f) / 64.0f - 2.0f;
     }
 
-private:
     uint32_t word() {
         uint32_t w = 0;
         for (int i = 0; i < 4; ++i) w = w << 8 | byte();
@@ -64,5 +74,5 @@ private:
     const uint8_t* data_ = nullptr;
     size_t left_ = 0;
     std::mt19937 random_;
-    bool endless_ = false, ended_ = false;
+    bool endless_ = false, ended_ = false, wild_ = false;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine_fuzz.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -52,7 +52,9 @@ void EngineFuzz::transform(double* m) {
 
 const float* EngineFuzz::numbers(size_t count) {
     const float* const kinds[] = {calm_, calm_, calm_, unit_, wild_};
-    return kinds[pick(std::size(kinds))] + pick(256) % (kMemory - count + 1);
+    const float* const kind = kinds[pick(std::size(kinds))];
+    any_wild_ |= kind == wild_;
+    return kind + pick(256) % (kMemory - count + 1);
 }
 
 const float* EngineFuzz::unit_numbers(size_t count) {
@@ -80,6 +82,12 @@ ajar_result EngineFuzz::note(ajar_result result) {
         rule = "an error without a message, code " + std::to_string(result);
     if (broken_.empty()) broken_ = rule;
     return result;
+}
+
+void EngineFuzz::expect_finite(const std::vector<float>& light, const char* what) {
+    if (any_wild_ || bytes_.wild()) return;
+    for (const float v : light)
+        if (!std::isfinite(v)) broken_ = std::string(what) + " that is not finite, from ordinary numbers";
 }
 
 void EngineFuzz::library_call() {

@@ -61,6 +61,8 @@ private:
         if (created != nullptr) known.push_back(created);
         return note(result);
     }
+    /// A scene of ordinary numbers has ordinary light.
+    void expect_finite(const std::vector<float>& light, const char* what);
     void library_call();
 
     // engine_fuzz_scene.cpp
@@ -112,6 +114,7 @@ private:
     ByteSource& bytes_;
     const std::string folder_;
     std::string broken_;
+    bool any_wild_ = false; ///< wild_ was pointed at
     uint32_t bakes_left_ = kMostBakes;
     float wild_[kMemory], calm_[kMemory], unit_[kMemory];
     uint32_t indices_[kMemory];

@@ -49,6 +49,7 @@ void EngineFuzz::read_layer(ajar_job job, uint32_t page, uint32_t layer) {
     // Exactly the size needed, or a sanitizer would not see what is written past it.
     std::vector<float> buffer(size_t{width} * height * channels - (chance(0.97) ? 0 : 1));
     note(ajar_job_read_layer(job, page, layer, maybe(buffer.data()), buffer.size()));
+    if (layer != AJAR_LAYER_AHD) expect_finite(buffer, "a layer"); // AHD are bits
 }
 
 void EngineFuzz::read_term(ajar_job job, uint32_t term) {
@@ -61,6 +62,7 @@ void EngineFuzz::read_term(ajar_job job, uint32_t term) {
     note(ajar_job_layer_size(job, page, AJAR_LAYER_IRRADIANCE, &width, &height, &channels));
     std::vector<float> buffer(size_t{width} * height * 3);
     note(ajar_job_read_term(job, term, page, maybe(buffer.data()), buffer.size()));
+    expect_finite(buffer, "a term");
 }
 
 void EngineFuzz::read_report(ajar_job job) {

@@ -41,6 +41,8 @@ void EngineFuzz::read_reference(ajar_reference reference) {
     std::vector<ajar_reference_point> points(chance(0.95) ? 8 : pick(8));
     uint32_t batches = 0;
     note(ajar_reference_read(reference, maybe(points.data()), points.size(), maybe(&batches)));
+    for (const ajar_reference_point& p : points)
+        expect_finite({p.irradiance[0], p.irradiance[1], p.irradiance[2], p.standard_error}, "a reference");
 }
 
 void EngineFuzz::reference_call() {
