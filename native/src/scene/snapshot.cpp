@@ -60,7 +60,10 @@ Vec2 Snapshot::lightmap_uv(uint32_t triangle, int corner) const {
     const Page& page = pages[instance.page];
     const Vec2 uv =
         meshes[instance.mesh].uv_layers[instance.lightmap_layer][3 * static_cast<size_t>(t.source) + corner];
-    return (uv * instance.uv_scale + instance.uv_offset) * Vec2(page.width, page.height);
+    // Further out floats no longer tell texels apart, and products of such numbers overflow.
+    constexpr float kFarthest = 0x1p24f;
+    return glm::clamp((uv * instance.uv_scale + instance.uv_offset) * Vec2(page.width, page.height), -kFarthest,
+                      kFarthest);
 }
 
 } // namespace ajar
