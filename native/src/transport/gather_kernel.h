@@ -18,6 +18,7 @@ struct Gatherer {
     static constexpr float kNearTexels = 4.0f; ///< a solid's inside closer than this speaks for an invalid receiver
     static constexpr uint32_t kNoTexel = 0xffffffffu;
     static constexpr float kLeastThrough = 1e-4f; ///< less light than this is not followed
+    static constexpr float kChainRays = 64.0f;    ///< rays behind one stand-in before fewer are followed
 
     const GatherScene& g;
     const GatherOptions& o;
@@ -25,6 +26,7 @@ struct Gatherer {
     Sink sink;
     float mis_gather; ///< rays over the hemisphere, per receiver
     uint64_t rays = 0;
+    uint64_t rays_before_chain = 0; ///< of the present stand-in
     TileRays tile_rays;
     Worker& worker = Worker::mine();
     Effect own;      ///< what ordinary rays count as
@@ -307,6 +309,7 @@ struct Gatherer {
     void stand_in(const Ray& ray, const Hit& hit, const Through& through, const Vec3& reflectance, const Origin& from,
                   int layer) {
         const float cosine = glm::dot(ray.direction, g.receivers.frame[tile.first + from.local].z);
+        rays_before_chain = rays;
         unmapped(ray, hit, through, reflectance, hash_combine(seed_of(from), static_cast<uint32_t>(layer)), 0, cosine);
     }
 
@@ -373,12 +376,17 @@ struct Gatherer {
         through.color *= reflectance;
         if (o.unmapped_direct) direct_light(p, n, through, hash_combine(seed, 0x11u), footprint(ray, hit, n, cosine));
         // Russian roulette by reflectance keeps chains short in dark rooms.
-        const float survive = depth == 0 ? 1.0f : std::min(1.0f, max_component(reflectance));
+        const float survive = depth == 0 ? 1.0f : std::min(1.0f, max_component(reflectance)) * chance_to_branch();
         if (unit_float(hash_combine(seed, 0x22u)) >= survive) return;
         const Vec3 local = sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f);
         through.color /= survive;
         path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), depth + 1, kMaxLayers,
              local.z);
+    }
+
+    /// Where surfaces reflect and let through at once, every one splits the chain: their number would be exponential.
+    float chance_to_branch() const {
+        return std::min(1.0f, kChainRays / static_cast<float>(std::max<uint64_t>(rays - rays_before_chain, 1)));
     }
 
     /// Squared radius of the part of a surface that one ray stands for, m^2.
