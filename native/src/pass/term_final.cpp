@@ -147,7 +147,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
     other->in_background_ = true;
-    other->source_samples_ = kSourceSamples / TwinCheck::kSourcePart;
+    other->source_samples_ = other_source_samples(settings_);
     try {
         other->find_source();
     } catch (const Error& e) {

@@ -41,6 +41,10 @@ double source_rays_ratio(const ajar_settings& settings) {
     return double(bounce_rays(settings)) / bounce_rays(other_source_settings(settings));
 }
 
+uint32_t other_source_samples(const ajar_settings& settings) {
+    return static_cast<uint32_t>(std::lround(kSourceSamples / source_rays_ratio(settings)));
+}
+
 TwinCheck::TwinCheck(const LightmapReceivers& receivers, const BakeResult& result)
     : receivers_(receivers),
       result_(result),
