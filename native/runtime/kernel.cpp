@@ -5,6 +5,15 @@
 
 #include "texel.h"
 
+// One library for all processors, and the wider vectors where they are there: the same operations, so the same bits.
+// Sanitizers start later than the choice between the two is made.
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define AJAR_WIDE_VECTORS __attribute__((flatten, target_clones("avx2", "default")))
+#else
+#define AJAR_WIDE_VECTORS
+#endif
+
 namespace ajar::runtime {
 namespace {
 
@@ -179,6 +188,7 @@ void run(const terms::Dispatch& d, const uint32_t* data, EntryReader reader, con
 
 } // namespace
 
+AJAR_WIDE_VECTORS
 void run_dispatch(const terms::Dispatch& d, const uint32_t* data, const uint16_t* palette, const TermWeight* weights,
                   const Target& target) {
     const EntryReader reader(d, data, palette, weights);
