@@ -105,10 +105,9 @@ void Job::predict(const Tracer& tracer, ThreadPool& pool, Progress& progress, do
     const TrialTimes& t = output_.bake.trial;
     auto& stages = output_.prediction.stages;
     for (uint32_t i = 0; i < AJAR_STAGE_COUNT; ++i) stages[i] = progress.stage_seconds(i);
-    const CheckTimes check =
-        check_times(output_.receivers.tiles.size(), settings_.bounces, stages[AJAR_STAGE_DIRECT] + t.bounces);
     stages[AJAR_STAGE_BOUNCES] = t.bounces;
-    stages[AJAR_STAGE_GATHER] = (1.0 + check.gather_part) * t.gather + check.source;
+    stages[AJAR_STAGE_GATHER] = t.gather + check_seconds(output_.receivers.tiles.size(), settings_.bounces,
+                                                         stages[AJAR_STAGE_DIRECT] + t.bounces, t.gather);
     stages[AJAR_STAGE_ENCODE] = seconds_to_store * (output_.receivers.count() + t.lights);
     double seconds = std::accumulate(stages.begin(), stages.end(), 0.0);
     if (settings_.check_points != 0) seconds += try_check(*scene_, tracer, settings_, pool, progress);

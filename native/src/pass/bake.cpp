@@ -51,14 +51,7 @@ void Baker::direct_source() {
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
             rays +=
                 sample_direct(s_, groups.groups()[0], tile, {static_cast<float>(gather_rays), 1.0f}, seed, {}, *direct);
-            if (rays_needed) {
-                GatherOptions o;
-                o.samples = gather_rays;
-                o.emission = true;
-                o.direct = &groups;
-                o.seed = seed;
-                rays += gather_tile(s_, tile, o, nullptr, *gather);
-            }
+            if (rays_needed) rays += gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, *gather);
             share_quads(tile, *gather, current_);
             for (uint32_t lane = 0; lane < tile.count; ++lane)
                 current_[tile.first + lane] += sum_of(*direct, lane) / static_cast<float>(source_samples_);
@@ -91,11 +84,7 @@ void Baker::bounce(uint32_t index) {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             auto sums = make_sums(false);
-            GatherOptions o;
-            o.samples = bounce_rays(settings_);
-            o.unmapped_direct = index == 1;
-            o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
-            progress_.add_rays(gather_tile(s_, tile, o, radiance_.data(), *sums));
+            progress_.add_rays(gather_tile(s_, tile, bounce_options(settings_, index), radiance_.data(), *sums));
             share_quads(tile, *sums, current_);
         },
         !in_background_);

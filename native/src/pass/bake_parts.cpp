@@ -70,6 +70,23 @@ float dark_level(const std::vector<MeasuredNoise>& pilot) {
     return dark_level(std::move(levels));
 }
 
+GatherOptions source_options(const ajar_settings& settings, const DirectGroups& groups, uint32_t seed) {
+    GatherOptions o;
+    o.samples = bounce_rays(settings);
+    o.emission = true;
+    o.direct = &groups;
+    o.seed = seed;
+    return o;
+}
+
+GatherOptions bounce_options(const ajar_settings& settings, uint32_t index) {
+    GatherOptions o;
+    o.samples = bounce_rays(settings);
+    o.unmapped_direct = index == 1;
+    o.seed = hash_combine(hash_combine(settings.seed, kSaltBounce), index);
+    return o;
+}
+
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed) {
     GatherOptions o;

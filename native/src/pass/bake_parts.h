@@ -52,6 +52,10 @@ float dark_level(const std::vector<MeasuredNoise>& pilot);
 /// Receivers that stand for a part of a tile in the pilot pass.
 Tile pilot_part(const Tile& tile, uint32_t part);
 
+/// Gather rays that meet what shines, beside the emitter samples of groups; they feed the bounces.
+GatherOptions source_options(const ajar_settings& settings, const DirectGroups& groups, uint32_t seed);
+/// Gather rays of a bounce, counted from 1.
+GatherOptions bounce_options(const ajar_settings& settings, uint32_t index);
 /// Final gather rays of a plan that share emission with the emitter samples of groups.
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed);

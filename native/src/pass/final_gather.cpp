@@ -179,10 +179,8 @@ void Baker::final_gather() {
 }
 
 double Baker::time_left() const {
-    const double source = progress_.stage_seconds(AJAR_STAGE_DIRECT) + progress_.stage_seconds(AJAR_STAGE_BOUNCES);
-    const CheckTimes check = check_times(s_.receivers.tiles.size(), settings_.bounces, source);
-    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * s_.receivers.count() - check.source -
-           check.gather_part * (settings_.time_limit - source_end_);
+    return seconds_left(settings_, progress_, s_.receivers.tiles.size(), source_end_) -
+           seconds_to_store_ * s_.receivers.count();
 }
 
 /// Every round takes tiles from all over the scene, so each takes about as long.

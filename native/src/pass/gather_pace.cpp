@@ -9,6 +9,14 @@ constexpr float kLeastTarget = 1e-4f; ///< stands for "as many rays as allowed" 
 constexpr float kLeastShortage = 1e-8f, kWorstShortage = 1e4f;
 constexpr double kExact = 1.02; ///< ratio that the shortage is found to
 
+/// Fewer rays, the last resort; false if they are the fewest already.
+bool halve(RayPlan& plan) {
+    const bool gather = plan.gather > 8, direct = plan.direct > 4;
+    if (gather) plan.gather /= 2;
+    if (direct) plan.direct /= 2;
+    return gather || direct;
+}
+
 /// The least shortage, to within kExact, whose rays are affordable. The worst if none is.
 template <class Affordable>
 float least_shortage(Affordable&& affordable) {
@@ -48,9 +56,7 @@ bool GatherPace::begin(double seconds, double seconds_per_ray, RayPlan& first, N
         first = {std::min(first.gather, kFirstRays.gather), std::min(first.direct, kFirstRays.direct)};
     }
     fit(affordable, first, goal);
-    while (rays(first, goal) > affordable && (first.gather > 8 || first.direct > 4)) {
-        if (first.gather > 8) first.gather /= 2;
-        if (first.direct > 4) first.direct /= 2;
+    while (rays(first, goal) > affordable && halve(first)) {
     }
     return true;
 }
@@ -103,11 +109,8 @@ bool TilePace::fit(size_t round, double affordable, std::vector<RayPlan>& plan) 
     plan_with(least_shortage(suffices), round, plan);
     for (bool changed = true; changed && rays(plan, round) > affordable;) {
         changed = false;
-        for (size_t i = 0; i < plan.size(); ++i) {
-            if (Rounds{tiles_.size()}.of(i) < round) continue;
-            if (plan[i].gather > 8) plan[i].gather /= 2, changed = true;
-            if (plan[i].direct > 4) plan[i].direct /= 2, changed = true;
-        }
+        for (size_t i = 0; i < plan.size(); ++i)
+            if (Rounds{tiles_.size()}.of(i) >= round) changed |= halve(plan[i]);
     }
     return true;
 }

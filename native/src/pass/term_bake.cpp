@@ -115,14 +115,9 @@ void TermBaker::direct_source() {
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
             rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr,
                                   table_, limits_, direct);
-            if (rays_needed) {
-                GatherOptions o;
-                o.samples = gather_rays;
-                o.emission = true;
-                o.direct = &groups;
-                o.seed = seed;
-                rays += gather_tile(s_, tile, o, nullptr, table_, limits_, gather);
-            }
+            if (rays_needed)
+                rays +=
+                    gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, table_, limits_, gather);
             tiles[i] = tile_rows(tile, gather, &direct);
             progress_.add_rays(rays);
         },
@@ -139,10 +134,7 @@ void TermBaker::bounce(uint32_t index) {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             TermSums sums(table_);
-            GatherOptions o;
-            o.samples = bounce_rays(settings_);
-            o.unmapped_direct = index == 1;
-            o.seed = hash_combine(hash_combine(settings_.seed, kSaltBounce), index);
+            GatherOptions o = bounce_options(settings_, index);
             TileAims aims(s_.receivers, tile);
             const uint64_t rays = aim_at_doors(aims, tile, o.samples, o.seed);
             o.aims = aims.empty() ? nullptr : &aims;

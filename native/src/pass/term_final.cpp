@@ -83,10 +83,8 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
 }
 
 double TermBaker::time_left(double lights) const {
-    const double source = progress_.stage_seconds(AJAR_STAGE_DIRECT) + progress_.stage_seconds(AJAR_STAGE_BOUNCES);
-    const CheckTimes check = check_times(s_.receivers.tiles.size(), settings_.bounces, source);
-    return settings_.time_limit - progress_.elapsed() - seconds_to_store_ * (lights + s_.receivers.count()) -
-           check.source - check.gather_part * (settings_.time_limit - source_end_);
+    return seconds_left(settings_, progress_, s_.receivers.tiles.size(), source_end_) -
+           seconds_to_store_ * (lights + s_.receivers.count());
 }
 
 /// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.

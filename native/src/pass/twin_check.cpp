@@ -23,10 +23,16 @@ size_t step_of(size_t tiles) { return std::clamp<size_t>(tiles / kLeastTiles, 1,
 
 } // namespace
 
-CheckTimes check_times(size_t tiles, uint32_t bounce_count, double source) {
+double check_seconds(size_t tiles, uint32_t bounces, double source, double gather) {
     constexpr double kAnswers = 2.0; // from the bake's source and from the other
     const double checked = double{kPilotReceivers} / kTileReceivers / static_cast<double>(step_of(tiles));
-    return {bounce_count > 0 ? source / TwinCheck::kSourcePart : 0.0, kAnswers * checked};
+    return (bounces > 0 ? source / TwinCheck::kSourcePart : 0.0) + kAnswers * checked * gather;
+}
+
+double seconds_left(const ajar_settings& settings, const Progress& progress, size_t tiles, double source_end) {
+    const double source = progress.stage_seconds(AJAR_STAGE_DIRECT) + progress.stage_seconds(AJAR_STAGE_BOUNCES);
+    return settings.time_limit - progress.elapsed() -
+           check_seconds(tiles, settings.bounces, source, settings.time_limit - source_end);
 }
 
 ajar_settings other_source_settings(ajar_settings settings) {

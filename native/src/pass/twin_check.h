@@ -49,13 +49,12 @@ private:
     std::vector<Part> parts_;
 };
 
-/// What the check of a bake's error takes beside the bake.
-struct CheckTimes {
-    double source = 0.0;      ///< s, another source
-    double gather_part = 0.0; ///< of the final gather, in further answers
-};
-/// source: seconds that the bake's own took.
-CheckTimes check_times(size_t tiles, uint32_t bounce_count, double source);
+/// Seconds that the check of a bake's error takes: another source, and further answers. source, gather: seconds of
+/// the bake's own source and final gather.
+double check_seconds(size_t tiles, uint32_t bounces, double source, double gather);
+/// Seconds that a time limit leaves, once the source is there, for the final gather and what follows its check.
+/// source_end: elapsed when the source was there.
+double seconds_left(const ajar_settings& settings, const Progress& progress, size_t tiles, double source_end);
 
 /// Settings of a bake that makes another source for one with these.
 ajar_settings other_source_settings(ajar_settings settings);
