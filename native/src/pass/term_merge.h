@@ -36,7 +36,7 @@ public:
     TermIndex(const TermSums& sums, const std::vector<Term>& terms);
     /// What a term brings to a lane; null if it never arrived in these sums.
     const TermSums::Block* block(size_t term, uint32_t lane) const {
-        return slot_[term] != TermSums::kNone ? &sums_->block(slot_[term], lane) : nullptr;
+        return slot_[term] != TermSums::kNone ? sums_->block(slot_[term], lane) : nullptr;
     }
     /// Appends the terms that bring light to a lane.
     void collect(uint32_t lane, std::vector<uint32_t>& out) const {

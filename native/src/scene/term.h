@@ -14,6 +14,7 @@
 
 namespace ajar {
 
+inline constexpr uint32_t kStoredTerms = 16; ///< of a receiver, beside the base: what the package has room for
 inline constexpr uint32_t kTermSwitches = 3; ///< doors and toggles a term can hold beside a set
 
 /// A product of elements: an optional light set and up to kTermSwitches doors and toggles.
@@ -100,32 +101,11 @@ public:
     bool empty() const { return count_ == 0; }
     bool overflowed() const { return overflowed_; }
 
-    /// Calls emit(term, sign) for every term of condition * term: w factors multiply, each 1 - w
-    /// factor splits in two. Terms longer than limit elements or kTermSwitches are skipped.
-    template <class Emit>
-    void expand(Term term, uint32_t limit, Emit&& emit) const {
-        if (assumed_ != 0 && term.contains(element_[0])) {
-            if (!state_[0]) return;
-            term = term.without(element_[0]);
-        }
-        uint32_t free[kCapacity], free_count = 0;
-        for (uint32_t i = assumed_; i < count_; ++i) {
-            if (!state_[i]) {
-                if (term.contains(element_[i])) return; // w * (1 - w)
-                free[free_count++] = element_[i];
-            } else if (!term.multiply(element_[i])) {
-                return;
-            }
-        }
-        for (uint32_t subset = 0; subset < (1u << free_count); ++subset) {
-            Term product = term;
-            bool fits = true;
-            float sign = 1.0f;
-            for (uint32_t i = 0; i < free_count && fits; ++i)
-                if (subset >> i & 1) fits = product.multiply(free[i]), sign = -sign;
-            if (fits && product.order() <= limit) emit(product, sign);
-        }
-    }
+    uint32_t count() const { return count_; }
+    uint32_t element(uint32_t i) const { return element_[i]; }
+    bool state(uint32_t i) const { return state_[i]; }
+    /// Whether the first one is the receiver's own surface.
+    bool has_assumed() const { return assumed_ != 0; }
 
 private:
     uint16_t element_[kCapacity] = {};

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <span>
+
 #include "transport/gather_kernel.h"
 
 namespace ajar {
@@ -9,21 +12,26 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
     const uint32_t x = local % page.width, y = local / page.width;
     const uint32_t own = g.receivers.of_texel[texel];
     const Vec3 up = g.receivers.frame[own].z * (kSideHeight * g.receivers.texel_size[own]);
-    uint32_t best = texel;
-    float best_distance = std::numeric_limits<float>::infinity();
+    struct Near {
+        float distance; ///< m^2
+        uint32_t texel, receiver;
+        bool operator<(const Near& other) const { return distance < other.distance; }
+    } near[9];
+    size_t count = 0;
     for (uint32_t ny = std::max(y, 1u) - 1; ny <= std::min(y + 1, page.height - 1); ++ny)
         for (uint32_t nx = std::max(x, 1u) - 1; nx <= std::min(x + 1, page.width - 1); ++nx) {
             const auto t = static_cast<uint32_t>(page.first_texel + ny * page.width + nx);
             const uint32_t r = g.receivers.of_texel[t];
             if (r == kNoReceiver || glm::dot(g.receivers.frame[r].z, g.receivers.frame[own].z) < 0.5f) continue;
             const Vec3 to = g.receivers.shown_origin(r) - p;
-            const float distance = glm::dot(to, to);
-            if (distance >= best_distance || g.tracer.intersect({p + up, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss)
-                continue;
-            best = t;
-            best_distance = distance;
+            near[count++] = {glm::dot(to, to), t, r};
         }
-    return best;
+    std::stable_sort(near, near + count);
+    for (const Near& n : std::span(near, count)) {
+        const Ray to{p + up, g.receivers.shown_origin(n.receiver) - p, 0.0f, 1.0f};
+        if (g.tracer.intersect(to, kMaskWall).triangle == kMiss) return n.texel;
+    }
+    return texel;
 }
 
 uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const Vec4* radiance,

@@ -5,6 +5,8 @@
 // scene pays only for what it has: one colour, colours per light set, or colours per product of
 // elements with the conditions that switchable surfaces put on a path.
 
+#include <bit>
+
 #include "base/work_clock.h"
 #include "transport/gather.h"
 
@@ -83,17 +85,12 @@ public:
     uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
     void fetch(uint32_t texel) const { __builtin_prefetch(rows_->begin(texel)); }
     void light(const Through& through, uint32_t set, const Vec3& radiance) {
-        arrive(through.condition, Term(set), through.color * radiance);
+        arrive(through.condition, sums_.slot_of(Term(set)), through.color * radiance);
     }
     void texel(const Through& through, uint32_t texel, float weight) {
         const Vec3 scale = through.color * weight;
-        // Most ways meet no switchable surface: each term passes as it is.
-        if (!Switches || through.condition.empty())
-            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
-                sums_.arrive(sums_.slot_of(e->term), e->color * scale);
-        else
-            for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
-                arrive(through.condition, table_[e->term], e->color * scale);
+        for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
+            arrive(through.condition, sums_.slot_of(e->term), e->color * scale);
     }
     void add_inside(uint32_t local) { sums_.add_inside(local); }
     void add_cosines(uint32_t first, uint32_t count, const PacketDirections& w) {
@@ -105,10 +102,38 @@ public:
     void end_packet(uint32_t, uint32_t, const PacketDirections&) {}
 
 private:
-    void arrive(const Condition& condition, const Term& term, const Vec3& light) {
-        condition.expand(term, limits_.order, [&](const Term& product, float sign) {
-            if (all_combine_ || product.order() < 2 || may_combine(product))
-                sums_.arrive(sums_.slot_of(product), light * sign);
+    // Most ways meet no switchable surface: each term passes as it is.
+    void arrive(const Condition& condition, uint32_t slot, const Vec3& light) {
+        if (!Switches || condition.empty())
+            sums_.arrive(slot, light);
+        else
+            arrive_if(condition, slot, light);
+    }
+    /// Light that needs states of doors and toggles: w factors multiply, each 1 - w factor splits in two.
+    void arrive_if(const Condition& condition, uint32_t slot, const Vec3& light) {
+        uint32_t products[1u << Condition::kCapacity], count = 0;
+        if (condition.has_assumed() && sums_.term(slot).contains(condition.element(0))) {
+            if (!condition.state(0)) return;
+            slot = sums_.slot_of(sums_.term(slot).without(condition.element(0)));
+        }
+        for (uint32_t i = condition.has_assumed(); i < condition.count() && slot != TermSums::kNone; ++i)
+            if (condition.state(i)) slot = times(slot, condition.element(i));
+        if (slot == TermSums::kNone) return;
+        products[count++] = slot;
+        for (uint32_t i = condition.has_assumed(); i < condition.count(); ++i) {
+            if (condition.state(i)) continue;
+            for (uint32_t k = 0; k < count; ++k)
+                products[count + k] =
+                    products[k] != TermSums::kNone ? times(products[k], condition.element(i)) : TermSums::kNone;
+            if (products[count] == slot) return; // w * (1 - w)
+            count *= 2;
+        }
+        for (uint32_t k = 0; k < count; ++k)
+            if (products[k] != TermSums::kNone) sums_.arrive(products[k], std::popcount(k) % 2 != 0 ? -light : light);
+    }
+    uint32_t times(uint32_t slot, uint32_t element) {
+        return sums_.times(slot, element, [&](const Term& product) {
+            return product.order() <= limits_.order && (all_combine_ || product.order() < 2 || may_combine(product));
         });
     }
     bool may_combine(const Term& term) const {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <memory>
+
 #include "receiver/lightmap.h"
 #include "sampling/sh.h"
 #include "transport/term_table.h"
@@ -8,7 +11,7 @@
 namespace ajar {
 
 /// Running sums of one tile for every term that reaches it. A slot is made when its term first
-/// arrives; a sample costs one cache line per term it carries.
+/// arrives, its sums where it does; a sample costs one cache line per term it carries.
 class TermSums {
 public:
     /// One term at one receiver.
@@ -39,7 +42,11 @@ public:
 
     uint32_t slots() const { return static_cast<uint32_t>(terms_.size()); }
     const Term& term(uint32_t slot) const { return terms_[slot]; }
-    const Block& block(uint32_t slot, uint32_t lane) const { return blocks_[slot][lane]; }
+    /// Null where the term has not arrived at the lane or its neighbours.
+    const Block* block(uint32_t slot, uint32_t lane) const {
+        const Block* group = groups_[slot][lane / kLanes];
+        return group != nullptr ? group + lane % kLanes : nullptr;
+    }
     /// Slots that brought light to a lane, in the order of their coming.
     const std::vector<uint32_t>& slots_at(uint32_t lane) const { return slots_at_[lane]; }
     uint32_t slot_of(uint32_t term_id) {
@@ -51,6 +58,19 @@ public:
         Recent& recent = recent_[TermHash()(term) % kRecent];
         if (recent.slot == kNone || recent.term != term) recent = {term, look_up(term)};
         return recent.slot;
+    }
+    /// Slot of the product of a slot's term and the weight of a door or toggle: the same where the term has it
+    /// already, kNone where keeps(product) is false or it would have too many elements. Worked out once.
+    template <class Keeps>
+    uint32_t times(uint32_t slot, uint32_t element, const Keeps& keeps) {
+        if (element >= products_.size()) products_.resize(element + 1);
+        std::vector<uint32_t>& row = products_[element];
+        if (slot >= row.size()) row.resize(slots() + slots() / 2, kUnknown);
+        if (row[slot] == kUnknown) {
+            Term product = terms_[slot];
+            row[slot] = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
+        }
+        return row[slot];
     }
     /// Collects what one sample brings; end_sample() books it.
     void arrive(uint32_t slot, const Vec3& light) {
@@ -75,6 +95,9 @@ public:
     static constexpr uint32_t kNone = 0xffffffffu;
 
 private:
+    static constexpr uint32_t kUnknown = kNone - 1;
+    static constexpr uint32_t kGroups = kTileReceivers / kLanes, kChunkGroups = 64;
+
     struct Pending {
         uint32_t slot;
         Vec3 light;
@@ -95,16 +118,28 @@ private:
     }
     uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
-        blocks_.emplace_back(kTileReceivers);
+        groups_.emplace_back();
         mark_.push_back(kNone);
         return slots() - 1;
+    }
+    Block& block_at(uint32_t slot, uint32_t lane) {
+        Block*& group = groups_[slot][lane / kLanes];
+        if (group == nullptr) group = make_group();
+        return group[lane % kLanes];
+    }
+    Block* make_group() {
+        if (next_group_ % kChunkGroups == 0) chunks_.push_back(std::make_unique<Block[]>(kChunkGroups * kLanes));
+        return &chunks_.back()[next_group_++ % kChunkGroups * kLanes];
     }
 
     const TermTable& table_;
     std::vector<uint32_t> slot_of_id_;
     std::unordered_map<Term, uint32_t, TermHash> slot_of_new_;
     std::vector<Term> terms_;
-    std::vector<std::vector<Block>> blocks_;
+    std::vector<std::array<Block*, kGroups>> groups_; ///< per slot, the sums of eight lanes; null where it never came
+    std::vector<std::unique_ptr<Block[]>> chunks_;
+    uint32_t next_group_ = 0;
+    std::vector<std::vector<uint32_t>> products_; ///< per element and slot
     std::vector<std::vector<uint32_t>> slots_at_;
     std::vector<Block> total_;
     std::vector<float> cosine_sum_, inside_;
@@ -118,7 +153,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
     float y[kShCount], total = 0.0f;
     sh_basis(w.x, w.y, w.z, y);
     for (const Pending& p : pending_) {
-        Block& b = blocks_[p.slot][lane];
+        Block& b = block_at(p.slot, lane);
         const Vec3 facing = p.light * scale;
         const float l = luminance(facing), along = l * w.z;
         if (!std::isfinite(l)) continue;
