@@ -200,7 +200,8 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
 }
 
 void TermBaker::find_source() {
-    if (settings_.door_rays > 0.0f) doors_ = door_boxes(s_.scene);
+    if (settings_.door_rays > 0.0f && doors_ == nullptr)
+        doors_ = std::make_shared<BoxesInSight>(s_.tracer, s_.receivers, door_boxes(s_.scene), settings_.seed);
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "base/memory.h"
 #include "pass/bake.h"
 #include "pass/term_merge.h"
+#include "transport/boxes_in_sight.h"
 
 namespace ajar {
 
@@ -79,11 +81,11 @@ private:
     TermRows radiance_;                      ///< what the next gather sees
     std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
-    std::vector<AimBox> doors_;
-    double pilot_pace_ = 0.0;        ///< seconds per ray
-    std::unique_ptr<TilePace> pace_; ///< where time is limited
-    Effect bookkeeping_;             ///< what keeping terms apart counts as
-    MemoryBudget budget_;            ///< of the pass in hand
+    std::shared_ptr<BoxesInSight> doors_; ///< that rays are aimed at; null: none are
+    double pilot_pace_ = 0.0;             ///< seconds per ray
+    std::unique_ptr<TilePace> pace_;      ///< where time is limited
+    Effect bookkeeping_;                  ///< what keeping terms apart counts as
+    MemoryBudget budget_;                 ///< of the pass in hand
 };
 
 } // namespace ajar

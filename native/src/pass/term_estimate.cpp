@@ -8,9 +8,11 @@ namespace {
 
 constexpr uint32_t kDarkSamples = 2; ///< per receiver and set, where the source pass found the set dark
 constexpr float kEvenLight = 0.8f;   ///< least over most light of neighbours that lie in no shadow's edge
-constexpr uint32_t kMostAims = 4;    ///< doors that a tile aims rays at
-constexpr float kAimShare = 0.02f;   ///< of a tile's indirect light: doors that bring less are left to chance
-constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's light do not drive its ray counts
+constexpr float kFullShare = 0.125f; ///< of a place's light: light sets with less get fewer samples, in proportion
+constexpr uint32_t kLeastSamples = 4;
+constexpr uint32_t kMostAims = 4;  ///< doors that a tile aims rays at
+constexpr float kAimShare = 0.02f; ///< of a tile's indirect light: doors that bring less are left to chance
+constexpr float kPlanShare = 0.1f; ///< terms below this share of a tile's light do not drive its ray counts
 
 } // namespace
 
@@ -29,6 +31,7 @@ std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
 /// is there, and in what these change.
 struct TermBaker::Evenness {
     float least[2], most[2];
+    float sum = 0.0f; ///< over the receivers
 
     Evenness() {
         std::fill(least, least + 2, std::numeric_limits<float>::infinity());
@@ -36,6 +39,7 @@ struct TermBaker::Evenness {
     }
     void add(int part, float light) {
         least[part] = std::min(least[part], light), most[part] = std::max(most[part], light);
+        sum += light;
     }
     bool is_dark() const { return most[0] == 0.0f && most[1] == 0.0f; }
     bool is_even() const { return least[0] >= kEvenLight * most[0] && least[1] >= kEvenLight * most[1]; }
@@ -53,8 +57,12 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
     return out;
 }
 
-/// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do.
+/// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
+/// they do where the set is a small part of the light: its noise may be as much larger (pilot_noise).
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
+    std::array<float, kTileReceivers / kLanes> all{};
+    for (uint32_t local = 0; local < tile.count; ++local)
+        all[local / kLanes] += luminance(source_.total(tile.first + local));
     for (const DirectGroups::Group& g : groups.groups()) {
         if (g.set == kNoElement) continue;
         for (uint32_t first = 0; first < tile.count; first += kLanes) {
@@ -64,6 +72,10 @@ void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
                 groups.limit(g.set, first / kLanes, kDarkSamples);
             else if (light.is_even())
                 groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
+            if (const float full = kFullShare * all[first / kLanes]; light.sum < full)
+                groups.limit(g.set, first / kLanes,
+                             std::max(kLeastSamples, static_cast<uint32_t>(
+                                                         std::ceil(static_cast<float>(g.samples) * light.sum / full))));
         }
     }
 }
@@ -100,16 +112,18 @@ float TermBaker::indirect_light(const Tile& tile) const {
 
 /// Rays into the doors through which light of some account comes to the tile.
 uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const {
+    if (doors_ == nullptr || doors_->boxes().empty()) return 0;
+    const Working here(Effect::doors);
     const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
     const uint32_t even = (share + 1) & ~1u;
-    const float least = doors_.empty() ? 0.0f : kAimShare * indirect_light(tile);
+    const float least = kAimShare * indirect_light(tile);
     const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[tile.first]);
     uint64_t rays = 0;
-    const Working here(Effect::doors);
-    for (const AimBox& door : doors_) {
+    for (const uint32_t door : doors_->from(tile.first, rays)) {
         if (aims.count() == kMostAims) break;
         rays += aims.add(
-            s_.tracer, door, [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least, own_seed);
+            s_.tracer, doors_->boxes()[door], [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least,
+            own_seed);
     }
     return rays;
 }
