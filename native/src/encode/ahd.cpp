@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "base/lanes.h"
 #include "sampling/sh.h"
 
 namespace ajar {
@@ -29,23 +30,40 @@ std::array<Vec3, kNormals> make_normals() {
 }
 const std::array<Vec3, kNormals> kFitNormals = make_normals();
 
-/// Ambient part and squared error of the best fit for a given direction; total = luminance of E_z.
-struct Fit {
-    float ambient = 0.0f, cost = 0.0f;
+/// Where the search looks next, in steps.
+constexpr float kDiagonal = 0.70710678f;
+constexpr Vec2 kCompass[kLanes] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+                                   {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
+
+/// Eight unit directions.
+struct alignas(32) Directions {
+    float x[kLanes], y[kLanes], z[kLanes];
+
+    void set(uint32_t lane, const Vec3& d) { x[lane] = d.x, y[lane] = d.y, z[lane] = d.z; }
+    Vec3 at(uint32_t lane) const { return {x[lane], y[lane], z[lane]}; }
 };
 
-Fit fit_ambient(const std::array<float, kNormals>& e, float total, const Vec3& d) {
-    float gg = 0.0f, gh = 0.0f, hh = 0.0f;
+Lanes all(float v) { return v - Lanes{}; }
+
+/// Ambient part and squared error of the best fit for each direction; total = luminance of E_z.
+struct alignas(32) Fits {
+    float ambient[kLanes], cost[kLanes];
+};
+
+Fits fit_ambient(const std::array<float, kNormals>& e, float total, const Directions& d) {
+    const Lanes x = lanes(d.x), y = lanes(d.y), z = lanes(d.z), none{};
+    Lanes gg{}, gh{}, hh{};
     for (int k = 0; k < kNormals; ++k) {
-        const float c = std::max(0.0f, glm::dot(kFitNormals[k], d)) / d.z;
-        const float g = 1.0f - c, h = total * c - e[k];
-        gg += g * g;
-        gh += g * h;
-        hh += h * h;
+        const Vec3& n = kFitNormals[k];
+        const Lanes along = n.x * x + n.y * y + n.z * z, c = (along > 0.0f ? along : none) / z;
+        const Lanes g = 1.0f - c, h = total * c - e[k];
+        gg += g * g, gh += g * h, hh += h * h;
     }
-    Fit f;
-    f.ambient = gg > 1e-12f ? std::clamp(-gh / gg, 0.0f, total) : total;
-    f.cost = hh + f.ambient * (2.0f * gh + f.ambient * gg);
+    const Lanes best = gg > 1e-12f ? -gh / gg : all(total), above = best > 0.0f ? best : none,
+                ambient = above < total ? above : all(total);
+    Fits f;
+    lanes(f.ambient) = ambient;
+    lanes(f.cost) = hh + ambient * (2.0f * gh + ambient * gg);
     return f;
 }
 
@@ -58,35 +76,48 @@ Vec3 limit_height(const Vec3& v) {
     return scale > 0.0f ? Vec3(d.x * scale, d.y * scale, kAhdMinHeight) : Vec3(0, 0, 1);
 }
 
+/// A direction and how well it fits.
+struct Choice {
+    Vec3 direction;
+    float ambient, cost;
+};
+
+Choice best_of(const std::array<float, kNormals>& e, float total, const Directions& d) {
+    const Fits f = fit_ambient(e, total, d);
+    uint32_t best = 0;
+    for (uint32_t lane = 1; lane < kLanes; ++lane)
+        if (f.cost[lane] < f.cost[best]) best = lane;
+    return {d.at(best), f.ambient[best], f.cost[best]};
+}
+
 /// Pattern search on the hemisphere: steps shrink until they no longer matter at 8 bits.
-Vec3 search(const std::array<float, kNormals>& e, float total, Vec3 best) {
-    float cost = fit_ambient(e, total, best).cost;
+Choice search(const std::array<float, kNormals>& e, float total, Choice best) {
     for (float step = 0.4f; step > 0.004f;) {
-        const Frame f = frame_from_normal(best);
-        Vec3 next = best;
-        for (const Vec3& axis : {f.x, -f.x, f.y, -f.y}) {
-            const Vec3 d = limit_height(best + step * axis);
-            const float c = fit_ambient(e, total, d).cost;
-            if (c < cost) cost = c, next = d;
+        const Frame f = frame_from_normal(best.direction);
+        Directions around;
+        for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            const Vec2& way = kCompass[lane];
+            around.set(lane, limit_height(best.direction + (step * way.x) * f.x + (step * way.y) * f.y));
         }
-        if (next == best)
-            step *= 0.5f;
-        else
+        const Choice next = best_of(e, total, around);
+        if (next.cost < best.cost)
             best = next;
+        else
+            step *= 0.5f;
     }
     return best;
 }
 
-Vec3 best_start(const std::array<float, kNormals>& e, float total, const float* sh) {
-    Vec3 best = limit_height({-sh[3], -sh[1], sh[2]});
-    float cost = fit_ambient(e, total, best).cost;
-    for (int i = 0; i < 6; ++i) {
+/// The mean direction of the light, or one of six around z.
+Choice best_start(const std::array<float, kNormals>& e, float total, const float* sh) {
+    const Vec3 mean = limit_height({-sh[3], -sh[1], sh[2]});
+    Directions starts;
+    for (uint32_t lane = 0; lane < kLanes; ++lane) starts.set(lane, mean);
+    for (uint32_t i = 0; i < 6; ++i) {
         const float phi = static_cast<float>(i) * kPi / 3.0f;
-        const Vec3 d(0.7660444f * std::cos(phi), 0.7660444f * std::sin(phi), 0.6427876f);
-        const float c = fit_ambient(e, total, d).cost;
-        if (c < cost) cost = c, best = d;
+        starts.set(i + 1, {0.7660444f * std::cos(phi), 0.7660444f * std::sin(phi), 0.6427876f});
     }
-    return best;
+    return best_of(e, total, starts);
 }
 
 /// Unsigned float with 5 exponent bits (bias 15) and the given mantissa bits.
@@ -120,8 +151,9 @@ Ahd fit_ahd(const Vec3& irradiance, const float* sh) {
     e[0] = total;
     for (const float v : e)
         if (!std::isfinite(v)) return out;
-    out.direction = search(e, total, best_start(e, total, sh));
-    out.ratio = fit_ambient(e, total, out.direction).ambient / total;
+    const Choice best = search(e, total, best_start(e, total, sh));
+    out.direction = best.direction;
+    out.ratio = best.ambient / total;
     // Without a highlight any direction does; z filters best with the neighbours.
     if (out.ratio >= 1.0f - 0.5f / 255.0f) out.direction = {0, 0, 1};
     return out;
