@@ -80,7 +80,8 @@ void Assembler::fill(ThreadPool& pool, Progress& progress) {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
     if (!result.terms.terms.empty()) {
         const Working here(bookkeeping_effect(scene.elements));
-        out.terms = make_terms(scene, receivers, result.terms, usable, solver.get(), pool, progress);
+        out.crowded_out = result.terms.crowded_out;
+        out.terms = make_terms(receivers, result.terms, usable, solver.get(), pool, progress);
     }
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
@@ -153,6 +154,8 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
                            t.texel,
                            {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()},
                            t.packed_direction});
+    c.crowded_texels = baked.crowded_out.receivers;
+    c.crowded_energy = baked.crowded_out.share();
     return c;
 }
 

@@ -38,7 +38,6 @@ uint32_t fit_direction(const TermLight& light) {
 }
 
 struct TermMaker {
-    const Snapshot& scene;
     const TermResult& terms;
     const SeamSolver* solver;
 
@@ -61,25 +60,18 @@ struct TermMaker {
         }
         const double n = std::max<double>(1.0, static_cast<double>(places.size()));
         out.relative_error = sum > 0.0 ? static_cast<float>(std::sqrt(squares / n) / (sum / n)) : 0.0f;
-        if (solver != nullptr && solver->points() != 0) stitch(out);
+        if (solver != nullptr) solver->solve(out.texel, out.irradiance, out.is_signed);
         return out;
-    }
-
-    void stitch(BakedTerm& term) const {
-        std::vector<Vec3> value(scene.texel_count(), Vec3(0.0f));
-        for (size_t i = 0; i < term.texel.size(); ++i) value[term.texel[i]] = term.irradiance[i];
-        solver->solve(value, term.is_signed);
-        for (size_t i = 0; i < term.texel.size(); ++i) term.irradiance[i] = value[term.texel[i]];
     }
 };
 
 } // namespace
 
-std::vector<BakedTerm> make_terms(const Snapshot& scene, const LightmapReceivers& receivers, const TermResult& terms,
+std::vector<BakedTerm> make_terms(const LightmapReceivers& receivers, const TermResult& terms,
                                   const std::vector<uint8_t>& usable, const SeamSolver* solver, ThreadPool& pool,
                                   Progress& progress) {
     const auto places = places_of_terms(receivers, terms, usable);
-    const TermMaker maker{scene, terms, solver};
+    const TermMaker maker{terms, solver};
     std::vector<BakedTerm> out(terms.terms.size());
     pool.for_each(out.size(), progress, [&](size_t i) { out[i] = maker.make(static_cast<uint32_t>(i), places[i]); });
     std::erase_if(out, [](const BakedTerm& t) { return t.texel.empty(); });

@@ -71,6 +71,8 @@ struct PackageContent {
     std::vector<PackageElement> elements;
     std::vector<PackageTerm> terms;
     LightPatchPlanes light_patches = LightPatchPlanes::none;
+    uint64_t crowded_texels = 0; ///< that lost products of elements because stronger terms left no room
+    double crowded_energy = 0.0; ///< share of all terms' luminance that was lost so
 };
 
 /// Dispatches of one class of terms.bin (native/runtime/terms_format.h).

@@ -9,9 +9,12 @@
 #include "base/error.h"
 #include "encode/ahd.h"
 #include "runtime/terms_format.h"
+#include "scene/term.h"
 
 namespace ajar {
 namespace {
+
+static_assert(kStoredTerms == terms::kMaxOverlap);
 
 Vec3 irradiance_of(const PackageTerm& term, size_t i) {
     return {term.irradiance[3 * i], term.irradiance[3 * i + 1], term.irradiance[3 * i + 2]};

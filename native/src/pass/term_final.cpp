@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The final pass of a bake with elements, and what it stores.
 #include <atomic>
+#include <span>
 
 #include "pass/term_estimate.h"
 #include "pass/twin_check.h"
@@ -15,7 +16,34 @@ struct FinalTile {
     std::vector<uint32_t> count;
     std::vector<TermLight> light;      ///< term = index into terms
     std::vector<double> kept, dropped; ///< luminance per term
+    CrowdedOut crowded_out;
+
+    /// Drops products of elements that are none of the strongest terms of a receiver, whose light begins there:
+    /// the package would have no room for them.
+    void thin_out(size_t begin);
 };
+
+void FinalTile::thin_out(size_t begin) {
+    const auto strength = [](const TermLight& l) { return std::abs(luminance(l.irradiance)); };
+    const std::span<TermLight> own(light.begin() + static_cast<ptrdiff_t>(begin), light.end());
+    for (const TermLight& l : own) crowded_out.of += strength(l);
+    if (own.size() <= kStoredTerms) return;
+    crowded_out.receivers++;
+    std::stable_sort(own.begin(), own.end(),
+                     [&](const TermLight& a, const TermLight& b) { return strength(a) > strength(b); });
+    size_t left = begin + kStoredTerms;
+    for (const TermLight& l : own.subspan(kStoredTerms)) {
+        if (terms[l.term].order() < 2) {
+            light[left++] = l;
+            continue;
+        }
+        crowded_out.light += strength(l);
+        kept[l.term] -= strength(l), dropped[l.term] += strength(l);
+    }
+    light.resize(left);
+    std::sort(light.begin() + static_cast<ptrdiff_t>(begin), light.end(),
+              [](const TermLight& a, const TermLight& b) { return a.term < b.term; });
+}
 
 void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate& t, FinalTile& out) {
     const Working here(bookkeeping_);
@@ -46,6 +74,8 @@ void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate
             (kept ? out.kept : out.dropped)[term] += std::abs(luminance(light.irradiance));
             if (kept) out.light.push_back(light);
         }
+        // Light patches have room for all.
+        if (settings_.light_patches == AJAR_LIGHT_PATCHES_NONE) out.thin_out(before);
         out.count.push_back(static_cast<uint32_t>(out.light.size() - before));
     }
 }
@@ -68,6 +98,7 @@ void TermBaker::join(std::vector<FinalTile>& tiles) {
             kept[number[i]] += t.kept[i];
             dropped[number[i]] += t.dropped[i];
         }
+        out.crowded_out.add(t.crowded_out);
         size_t next = 0;
         for (const uint32_t count : t.count) {
             for (uint32_t k = 0; k < count; ++k, ++next) {
@@ -146,6 +177,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
     other->in_background_ = true;
     other->source_samples_ = other_source_samples(settings_);
+    other->doors_ = doors_;
     try {
         other->find_source();
     } catch (const Error& e) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "post/stitch.h"
 
+#include <algorithm>
+
 namespace ajar {
 
 namespace {
@@ -15,9 +17,8 @@ struct Row {
     float weight[8];
 };
 
-} // namespace
-
-struct SeamSolver::System {
+/// Seam points that hang together by the texels they read, and those texels.
+struct Piece {
     std::vector<Row> rows;
     std::vector<uint32_t> texel; ///< of each unknown
 
@@ -30,8 +31,37 @@ struct SeamSolver::System {
             for (int k = 0; k < 8; ++k) y[r.column[k]] += r.weight[k] * d;
         }
     }
-    void build(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable);
     std::vector<Vec3> change(const std::vector<Vec3>& x0) const;
+};
+
+constexpr uint32_t kNowhere = 0xffffffffu;
+
+/// Sets of numbers that get joined.
+class Groups {
+public:
+    uint32_t add() {
+        parent_.push_back(static_cast<uint32_t>(parent_.size()));
+        return parent_.back();
+    }
+    uint32_t find(uint32_t i) {
+        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+        return i;
+    }
+    void join(uint32_t a, uint32_t b) { parent_[find(b)] = find(a); }
+
+private:
+    std::vector<uint32_t> parent_;
+};
+
+} // namespace
+
+struct SeamSolver::System {
+    std::vector<Piece> pieces;
+    std::vector<uint32_t> piece, unknown; ///< per page texel; kNowhere: no seam reads it
+    uint64_t points = 0;
+
+    void build(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable);
+    void share_out(const std::vector<Row>& rows, const std::vector<uint32_t>& texel);
 };
 
 namespace {
@@ -55,13 +85,15 @@ Vec3 safe_ratio(const glm::dvec3& a, const glm::dvec3& b) {
 } // namespace
 
 void SeamSolver::System::build(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable) {
-    std::vector<uint32_t> index(usable.size(), 0xffffffffu);
-    const auto number = [&, this](uint32_t texel) {
-        if (index[texel] == 0xffffffffu) {
-            index[texel] = static_cast<uint32_t>(this->texel.size());
-            this->texel.push_back(texel);
+    std::vector<uint32_t> texels;
+    std::vector<Row> rows;
+    unknown.assign(usable.size(), kNowhere);
+    const auto number = [&](uint32_t texel) {
+        if (unknown[texel] == kNowhere) {
+            unknown[texel] = static_cast<uint32_t>(texels.size());
+            texels.push_back(texel);
         }
-        return index[texel];
+        return unknown[texel];
     };
     for (const SeamPoint& p : seams) {
         if (touches_unusable(p.a, usable) || touches_unusable(p.b, usable)) continue;
@@ -76,10 +108,38 @@ void SeamSolver::System::build(const std::vector<SeamPoint>& seams, const std::v
         }
         rows.push_back(r);
     }
+    points = rows.size();
+    share_out(rows, texels);
+}
+
+/// Numbers the unknowns anew, within the piece they belong to.
+void SeamSolver::System::share_out(const std::vector<Row>& rows, const std::vector<uint32_t>& texel) {
+    Groups groups;
+    for (size_t i = 0; i < texel.size(); ++i) groups.add();
+    for (const Row& r : rows)
+        for (int k = 1; k < 8; ++k) groups.join(r.column[0], r.column[k]);
+    std::vector<uint32_t> piece_of(texel.size(), kNowhere), place(texel.size());
+    piece.assign(unknown.size(), kNowhere);
+    for (uint32_t i = 0; i < texel.size(); ++i) {
+        uint32_t& p = piece_of[groups.find(i)];
+        if (p == kNowhere) {
+            p = static_cast<uint32_t>(pieces.size());
+            pieces.emplace_back();
+        }
+        place[i] = static_cast<uint32_t>(pieces[p].texel.size());
+        pieces[p].texel.push_back(texel[i]);
+        piece[texel[i]] = p;
+        unknown[texel[i]] = place[i];
+    }
+    for (Row r : rows) {
+        Piece& p = pieces[piece[texel[r.column[0]]]];
+        for (uint32_t& c : r.column) c = place[c];
+        p.rows.push_back(r);
+    }
 }
 
 /// Solves for the change of x, whose start is 0; the three channels run side by side.
-std::vector<Vec3> SeamSolver::System::change(const std::vector<Vec3>& x0) const {
+std::vector<Vec3> Piece::change(const std::vector<Vec3>& x0) const {
     const size_t n = x0.size();
     std::vector<Vec3> x(n, Vec3(0.0f)), r(n), p(n), q(n);
     apply(x0, q);
@@ -105,15 +165,36 @@ SeamSolver::SeamSolver(const std::vector<SeamPoint>& seams, const std::vector<ui
 
 SeamSolver::~SeamSolver() = default;
 
-uint64_t SeamSolver::points() const { return system_->rows.size(); }
+uint64_t SeamSolver::points() const { return system_->points; }
 
-void SeamSolver::solve(std::vector<Vec3>& value, bool may_be_negative) const {
+void SeamSolver::solve(std::vector<Vec3>& value) const {
     const Working here(Effect::seams);
-    std::vector<Vec3> x0(system_->texel.size());
-    for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[system_->texel[i]];
-    const std::vector<Vec3> change = system_->change(x0);
-    for (size_t i = 0; i < x0.size(); ++i)
-        value[system_->texel[i]] = may_be_negative ? x0[i] + change[i] : glm::max(x0[i] + change[i], Vec3(0.0f));
+    for (const Piece& piece : system_->pieces) {
+        std::vector<Vec3> x0(piece.texel.size());
+        for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[piece.texel[i]];
+        const std::vector<Vec3> change = piece.change(x0);
+        for (size_t i = 0; i < x0.size(); ++i) value[piece.texel[i]] = glm::max(x0[i] + change[i], Vec3(0.0f));
+    }
+}
+
+void SeamSolver::solve(std::span<const uint32_t> texel, std::span<Vec3> value, bool may_be_negative) const {
+    const Working here(Effect::seams);
+    std::vector<std::pair<uint32_t, uint32_t>> on_seams; // piece, place in value
+    for (uint32_t i = 0; i < texel.size(); ++i)
+        if (const uint32_t p = system_->piece[texel[i]]; p != kNowhere) on_seams.emplace_back(p, i);
+    std::sort(on_seams.begin(), on_seams.end());
+    for (auto begin = on_seams.begin(), end = begin; begin != on_seams.end(); begin = end) {
+        const Piece& piece = system_->pieces[begin->first];
+        std::vector<Vec3> x0(piece.texel.size(), Vec3(0.0f));
+        for (; end != on_seams.end() && end->first == begin->first; ++end)
+            x0[system_->unknown[texel[end->second]]] = value[end->second];
+        const std::vector<Vec3> change = piece.change(x0);
+        for (auto k = begin; k != end; ++k) {
+            Vec3& v = value[k->second];
+            v += change[system_->unknown[texel[k->second]]];
+            if (!may_be_negative) v = glm::max(v, Vec3(0.0f));
+        }
+    }
 }
 
 uint64_t stitch_seams(const std::vector<SeamPoint>& seams, const std::vector<uint8_t>& usable,

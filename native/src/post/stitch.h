@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "receiver/seams.h"
 
@@ -15,8 +16,10 @@ public:
     ~SeamSolver();
     /// Seam points in use.
     uint64_t points() const;
-    /// Moves value (all page texels) as stitch_seams does; below zero only if may_be_negative.
-    void solve(std::vector<Vec3>& value, bool may_be_negative = false) const;
+    /// Moves value (all page texels) as stitch_seams does, not below zero.
+    void solve(std::vector<Vec3>& value) const;
+    /// The same for values at some texels; all others are 0 and stay so.
+    void solve(std::span<const uint32_t> texel, std::span<Vec3> value, bool may_be_negative) const;
 
 private:
     struct System;
