@@ -10,7 +10,9 @@ namespace {
 constexpr uint64_t kRowCopies = 3;     ///< of a pass's rows: per tile, joined, added to the source
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
-constexpr float kPruneShare = 4.0f; ///< of a term's threshold: light that is dimmer is reflected only by chance
+/// Shares of a term's threshold: light that is dimmer is reflected only by chance, in the bounces, whose noise many
+/// rays average later, and in the final gather.
+constexpr float kBouncePrune = 16.0f, kFinalPrune = 4.0f;
 
 uint32_t order_of(uint32_t combinations) {
     return combinations == AJAR_COMBINATIONS_NONE ? 1 : combinations == AJAR_COMBINATIONS_AUTO ? kAutoOrder : kAllOrder;
@@ -27,6 +29,7 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       seconds_to_store_(seconds_to_store),
       limits_{order_of(settings.combinations)},
       bookkeeping_(bookkeeping_effect(scene.scene.elements)),
+      rows_(pool, progress),
       budget_(settings.memory_limit, "light sets, doors and toggles", scene.scene.name) {
     for (uint32_t e = 0; e < s_.scene.elements.size(); ++e)
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
@@ -71,33 +74,31 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
 /// Ends a pass: its rows become the bounce in hand and part of the source of the final gather.
 void TermBaker::take(std::vector<TileRows>& tiles) {
     const Working here(bookkeeping_);
-    current_ = merge_tiles(tiles, table_);
+    current_ = rows_.merge_tiles(tiles, table_);
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(s_.receivers.count())));
-    source_ = source_.first.size() > 1 ? add_rows(source_, current_) : current_;
+    source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
     if (settings_.term_threshold > 0.0f)
-        current_ = prune(current_, hash_combine(settings_.seed, static_cast<uint32_t>(result_.bounce_means.size())));
+        current_ = prune(current_, kBouncePrune,
+                         hash_combine(settings_.seed, static_cast<uint32_t>(result_.bounce_means.size())));
 }
 
 /// What is too dim to matter alone once reflected, less than a texel would keep, is left out or made
 /// that bright by chance: rows get short, and their sum stays what it is in the mean.
-ReceiverRows TermBaker::prune(const ReceiverRows& rows, uint32_t seed) const {
-    ReceiverRows kept;
-    kept.first.reserve(rows.first.size());
-    for (uint32_t r = 0; r + 1 < rows.first.size(); ++r) {
+ReceiverRows TermBaker::prune(const ReceiverRows& rows, float share, uint32_t seed) const {
+    return rows_.make_rows(s_.receivers.count(), [&](uint64_t row, std::vector<TermColor>& kept) {
+        const auto r = static_cast<uint32_t>(row);
         for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e) {
-            const float least = kPruneShare * threshold_[e->term], level = max_component(glm::abs(e->color));
+            const float least = share * threshold_[e->term], level = max_component(glm::abs(e->color));
             if (table_[e->term].is_base() || level >= least)
-                kept.entries.push_back(*e);
+                kept.push_back(*e);
             else if (unit_float(hash_combine(hash_combine(seed, s_.receivers.texel[r]), e->term)) * least < level)
-                kept.entries.push_back({e->term, e->color * (least / level)});
+                kept.push_back({e->term, e->color * (least / level)});
         }
-        kept.first.push_back(kept.entries.size());
-    }
-    return kept;
+    });
 }
 
 void TermBaker::direct_source() {
@@ -126,7 +127,7 @@ void TermBaker::direct_source() {
 }
 
 void TermBaker::bounce(uint32_t index) {
-    radiance_ = radiance_rows(current_, s_.receivers, s_.scene.texel_count());
+    radiance_ = rows_.radiance_rows(current_, s_.receivers, s_.scene.texel_count());
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
     pool_.for_each(
@@ -134,11 +135,8 @@ void TermBaker::bounce(uint32_t index) {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             TermSums sums(table_);
-            GatherOptions o = bounce_options(settings_, index);
-            TileAims aims(s_.receivers, tile);
-            const uint64_t rays = aim_at_doors(aims, tile, o.samples, o.seed);
-            o.aims = aims.empty() ? nullptr : &aims;
-            progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, table_, limits_, sums));
+            progress_.add_rays(
+                gather_tile(s_, tile, bounce_options(settings_, index), &radiance_, table_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
         !in_background_);
@@ -206,8 +204,9 @@ void TermBaker::find_source() {
     direct_source();
     if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
-    radiance_ = radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, settings_.seed) : source_, s_.receivers,
-                              s_.scene.texel_count());
+    radiance_ =
+        rows_.radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune, settings_.seed) : source_,
+                            s_.receivers, s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     source_end_ = progress_.elapsed();
 }

@@ -34,7 +34,7 @@ private:
     EmitterSet find_bright_texels();
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
-    ReceiverRows prune(const ReceiverRows& rows, uint32_t seed) const;
+    ReceiverRows prune(const ReceiverRows& rows, float share, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups groups) const;
@@ -85,7 +85,8 @@ private:
     double pilot_pace_ = 0.0;             ///< seconds per ray
     std::unique_ptr<TilePace> pace_;      ///< where time is limited
     Effect bookkeeping_;                  ///< what keeping terms apart counts as
-    MemoryBudget budget_;                 ///< of the pass in hand
+    RowMaker rows_;
+    MemoryBudget budget_; ///< of the pass in hand
 };
 
 } // namespace ajar

@@ -40,66 +40,105 @@ void sort_unique(std::vector<uint32_t>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table) {
-    std::vector<Term> met;
-    size_t entries = 0;
-    for (const TileRows& t : tiles) {
-        met.insert(met.end(), t.terms.begin(), t.terms.end());
-        entries += t.entries.size();
-    }
-    table.add(std::move(met));
+/// Rows of some receivers that follow each other.
+struct RowMaker::Part {
+    std::vector<uint32_t> count; ///< entries of each row
+    std::vector<TermColor> entries;
+};
+
+ReceiverRows RowMaker::join(std::vector<Part>& parts) const {
     ReceiverRows rows;
-    rows.entries.reserve(entries);
-    for (TileRows& t : tiles) {
-        std::vector<uint32_t> number(t.terms.size());
-        for (size_t i = 0; i < number.size(); ++i) number[i] = table.find(t.terms[i]);
-        size_t next = 0;
-        for (const uint32_t count : t.count) {
-            const size_t begin = rows.entries.size();
-            for (uint32_t k = 0; k < count; ++k, ++next)
-                rows.entries.push_back({number[t.entries[next].term], t.entries[next].color});
-            std::sort(rows.entries.begin() + static_cast<ptrdiff_t>(begin), rows.entries.end(),
-                      [](const TermColor& a, const TermColor& b) { return a.term < b.term; });
-            rows.first.push_back(rows.entries.size());
-        }
-        t = {};
+    std::vector<size_t> first_row, first_entry;
+    size_t row = 0, entry = 0;
+    for (const Part& p : parts) {
+        first_row.push_back(row), first_entry.push_back(entry);
+        row += p.count.size(), entry += p.entries.size();
     }
+    rows.first.resize(row + 1);
+    rows.entries.resize(entry);
+    rows.first[row] = entry;
+    pool_.for_each(
+        parts.size(), progress_,
+        [&](size_t i) {
+            std::copy(parts[i].entries.begin(), parts[i].entries.end(),
+                      rows.entries.begin() + static_cast<ptrdiff_t>(first_entry[i]));
+            uint64_t next = first_entry[i];
+            for (size_t k = 0; k < parts[i].count.size(); ++k) {
+                rows.first[first_row[i] + k] = next;
+                next += parts[i].count[k];
+            }
+            parts[i] = {};
+        },
+        false);
     return rows;
 }
 
-ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b) {
-    ReceiverRows sum;
-    sum.entries.reserve(a.entries.size() + b.entries.size() / 4);
-    for (uint32_t r = 0; r + 1 < a.first.size(); ++r) {
+ReceiverRows RowMaker::make_rows(uint64_t count, const Make& make) const {
+    constexpr uint64_t kPartRows = 1024;
+    std::vector<Part> parts((count + kPartRows - 1) / kPartRows);
+    pool_.for_each(
+        parts.size(), progress_,
+        [&](size_t i) {
+            for (uint64_t r = i * kPartRows; r < std::min(count, (i + 1) * kPartRows); ++r) {
+                const size_t before = parts[i].entries.size();
+                make(r, parts[i].entries);
+                parts[i].count.push_back(static_cast<uint32_t>(parts[i].entries.size() - before));
+            }
+        },
+        false);
+    return join(parts);
+}
+
+ReceiverRows RowMaker::merge_tiles(std::vector<TileRows>& tiles, TermTable& table) const {
+    std::vector<Term> met;
+    for (const TileRows& t : tiles) met.insert(met.end(), t.terms.begin(), t.terms.end());
+    table.add(std::move(met));
+    std::vector<Part> parts(tiles.size());
+    pool_.for_each(
+        tiles.size(), progress_,
+        [&](size_t i) {
+            TileRows& t = tiles[i];
+            for (TermColor& e : t.entries) e.term = table.find(t.terms[e.term]);
+            auto begin = t.entries.begin();
+            for (const uint32_t count : t.count) {
+                std::sort(begin, begin + count, [](const TermColor& a, const TermColor& b) { return a.term < b.term; });
+                begin += count;
+            }
+            parts[i] = {std::move(t.count), std::move(t.entries)};
+            t = {};
+        },
+        false);
+    return join(parts);
+}
+
+ReceiverRows RowMaker::add_rows(const ReceiverRows& a, const ReceiverRows& b) const {
+    return make_rows(a.first.size() - 1, [&](uint64_t row, std::vector<TermColor>& sum) {
+        const auto r = static_cast<uint32_t>(row);
         const TermColor *i = a.begin(r), *j = b.begin(r);
         while (i != a.end(r) || j != b.end(r)) {
             const bool left = j == b.end(r) || (i != a.end(r) && i->term <= j->term),
                        right = i == a.end(r) || (j != b.end(r) && j->term <= i->term);
-            sum.entries.push_back(
-                {left ? i->term : j->term, (left ? i->color : Vec3(0.0f)) + (right ? j->color : Vec3(0.0f))});
+            sum.push_back({left ? i->term : j->term, (left ? i->color : Vec3(0.0f)) + (right ? j->color : Vec3(0.0f))});
             i += left;
             j += right;
         }
-        sum.first.push_back(sum.entries.size());
-    }
-    return sum;
+    });
 }
 
-TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers, uint64_t texels) {
+TermRows RowMaker::radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers,
+                                 uint64_t texels) const {
     TermRows rows;
     rows.flags.assign(texels, 0);
-    rows.first.assign(texels + 1, 0);
-    rows.entries.reserve(irradiance.entries.size());
-    for (uint64_t t = 0; t < texels; ++t) {
+    ReceiverRows radiance = make_rows(texels, [&](uint64_t t, std::vector<TermColor>& out) {
         const uint32_t r = receivers.of_texel[t];
-        if (r != kNoReceiver) {
-            rows.flags[t] = receivers.cut[r] != 0 ? kTexelCut : 0;
-            const Vec3 reflected = receivers.albedo[r] * kInvPi;
-            for (const TermColor* e = irradiance.begin(r); e != irradiance.end(r); ++e)
-                rows.entries.push_back({e->term, e->color * reflected});
-        }
-        rows.first[t + 1] = rows.entries.size();
-    }
+        if (r == kNoReceiver) return;
+        rows.flags[t] = receivers.cut[r] != 0 ? kTexelCut : 0;
+        const Vec3 reflected = receivers.albedo[r] * kInvPi;
+        for (const TermColor* e = irradiance.begin(r); e != irradiance.end(r); ++e)
+            out.push_back({e->term, e->color * reflected});
+    });
+    rows.first = std::move(radiance.first);
+    rows.entries = std::move(radiance.entries);
     return rows;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "base/parallel.h"
 #include "receiver/lightmap.h"
 #include "transport/term_sums.h"
 
@@ -51,13 +53,28 @@ private:
 /// Ascending, each once.
 void sort_unique(std::vector<uint32_t>& values);
 
-/// Joins the rows of all tiles; terms that are new get their numbers in table.
-ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table);
+/// Works on rows in parallel; results do not depend on the number of threads. All throw Cancelled.
+class RowMaker {
+public:
+    RowMaker(ThreadPool& pool, Progress& progress) : pool_(pool), progress_(progress) {}
 
-/// Entry by entry sum of two sets of rows.
-ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b);
+    /// Joins the rows of all tiles; terms that are new get their numbers in table.
+    ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table) const;
+    /// Entry by entry sum of two sets of rows.
+    ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b) const;
+    /// Outgoing radiance per page texel of receivers with these irradiances.
+    TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers, uint64_t texels) const;
 
-/// Outgoing radiance per page texel of receivers with these irradiances.
-TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers, uint64_t texels);
+    /// count rows, one by one: make(i, out) appends the entries of row i.
+    using Make = std::function<void(uint64_t, std::vector<TermColor>&)>;
+    ReceiverRows make_rows(uint64_t count, const Make& make) const;
+
+private:
+    struct Part;
+    ReceiverRows join(std::vector<Part>& parts) const;
+
+    ThreadPool& pool_;
+    Progress& progress_;
+};
 
 } // namespace ajar
