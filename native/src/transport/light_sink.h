@@ -89,6 +89,7 @@ public:
     }
     void texel(const Through& through, uint32_t texel, float weight) {
         const Vec3 scale = through.color * weight;
+        if (!Switches || through.condition.empty()) return sums_.arrive(rows_->begin(texel), rows_->end(texel), scale);
         for (const TermColor* e = rows_->begin(texel); e != rows_->end(texel); ++e)
             arrive(through.condition, sums_.slot_of(e->term), e->color * scale);
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "base/lanes.h"
 #include "receiver/lightmap.h"
 #include "sampling/sh.h"
 #include "transport/term_table.h"
@@ -81,6 +82,20 @@ public:
         mark_[slot] = static_cast<uint32_t>(pending_.size());
         pending_.push_back({slot, light});
     }
+    /// The same for every entry of a row, times scale.
+    void arrive(const TermColor* begin, const TermColor* end, const Vec3& scale) {
+        if (!pending_.empty()) {
+            for (; begin != end; ++begin) arrive(slot_of(begin->term), begin->color * scale);
+            return;
+        }
+        // A row names each term once.
+        pending_.resize(static_cast<size_t>(end - begin));
+        for (uint32_t i = 0; i < pending_.size(); ++i) {
+            const uint32_t slot = slot_of(begin[i].term);
+            mark_[slot] = i;
+            pending_[i] = {slot, begin[i].color * scale};
+        }
+    }
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
 
@@ -150,15 +165,19 @@ private:
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
     if (pending_.empty()) return;
-    float y[kShCount], total = 0.0f;
+    static_assert(kShCount == kLanes + 1);
+    alignas(32) float y[kShCount];
+    float total = 0.0f;
     sh_basis(w.x, w.y, w.z, y);
+    const Lanes basis = lanes(y);
     for (const Pending& p : pending_) {
         Block& b = block_at(p.slot, lane);
         const Vec3 facing = p.light * scale;
         const float l = luminance(facing), along = l * w.z;
         if (!std::isfinite(l)) continue;
         if (b.last_sample < 0.0f) slots_at_[lane].push_back(p.slot);
-        for (int i = 0; i < kShCount; ++i) b.sh[i] += y[i] * l;
+        lanes(b.sh) += basis * l;
+        b.sh[kLanes] += y[kLanes] * l;
         for (int c = 0; c < 3; ++c) b.irradiance[c] += facing[c] * w.z;
         b.book(sample, along);
         total += along;
