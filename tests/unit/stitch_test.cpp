@@ -173,6 +173,27 @@ TEST(Stitch, NothingBecomesNegative) {
     EXPECT_GT(c.value[TwoCharts::at(9, 7)].x, 0.0f);
 }
 
+TEST(Stitch, ValuesAtSomeTexelsMoveAsIfTheOthersWereZero) {
+    TwoCharts all;
+    all.fill([](uint32_t x, uint32_t y) { return y < 8 && x < 20 ? Vec3(x, 2.0f, y) : Vec3(0.0f); });
+    std::vector<uint32_t> texel;
+    std::vector<Vec3> value;
+    for (uint32_t t = 0; t < all.value.size(); ++t)
+        if (all.value[t] != Vec3(0.0f)) texel.push_back(t), value.push_back(all.value[t]);
+    ASSERT_GT(texel.size(), 40u);
+    SeamSolver(all.seam, all.usable).solve(texel, value, false);
+    ASSERT_GT(all.stitch(), 0u);
+    for (size_t i = 0; i < texel.size(); ++i) EXPECT_EQ(value[i], all.value[texel[i]]) << texel[i];
+}
+
+TEST(Stitch, SignedValuesMayStayNegative) {
+    TwoCharts charts;
+    const std::vector<uint32_t> texel{TwoCharts::at(10, 5), TwoCharts::at(10, 6)};
+    std::vector<Vec3> value(2, Vec3(-1.0f));
+    SeamSolver(charts.seam, charts.usable).solve(texel, value, true);
+    for (const Vec3& v : value) EXPECT_LT(v.x, -0.1f);
+}
+
 TEST(Stitch, WithoutSeamsNothingChanges) {
     TwoCharts c;
     fill_step(c);

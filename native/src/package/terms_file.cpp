@@ -251,7 +251,7 @@ TermsFile Builder::build(std::span<const PageChecksums> checksums) {
     if (out_.palette.size() % 2 != 0) out_.palette.push_back(0); // whole words, for graphics cards
     summarise_waste(plan);
     summary_.crowded_texels = content_.crowded_texels + lists_.crowded_texels;
-    summary_.crowded_energy = content_.crowded_energy + lists_.crowded_energy;
+    summary_.crowded_energy = content_.crowded_energy + (1.0 - content_.crowded_energy) * lists_.crowded_energy;
     TermsFile file{assemble(out_), std::move(summary_)};
     file.summary.bytes = file.bytes.size();
     return file;

@@ -7,7 +7,7 @@ namespace ajar {
 
 namespace {
 
-constexpr uint64_t kRowCopies = 3;     ///< of a pass's rows: per tile, joined, added to the source
+constexpr uint64_t kRowCopies = 5;     ///< of a pass's rows: per tile, joined, added to the source, parts of that
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
 constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
 /// Shares of a term's threshold: light that is dimmer is reflected only by chance, in the bounces, whose noise many
@@ -27,6 +27,8 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       pool_(pool),
       progress_(progress),
       seconds_to_store_(seconds_to_store),
+      has_primary_(
+          std::any_of(scene.scene.lights.begin(), scene.scene.lights.end(), [](const Light& l) { return l.primary; })),
       limits_{order_of(settings.combinations)},
       bookkeeping_(bookkeeping_effect(scene.scene.elements)),
       rows_(pool, progress),
@@ -115,10 +117,9 @@ void TermBaker::direct_source() {
             TermSums direct(table_), gather(table_);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
             rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr,
-                                  table_, limits_, direct);
+                                  limits_, direct);
             if (rays_needed)
-                rays +=
-                    gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, table_, limits_, gather);
+                rays += gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, limits_, gather);
             tiles[i] = tile_rows(tile, gather, &direct);
             progress_.add_rays(rays);
         },
@@ -135,8 +136,7 @@ void TermBaker::bounce(uint32_t index) {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             TermSums sums(table_);
-            progress_.add_rays(
-                gather_tile(s_, tile, bounce_options(settings_, index), &radiance_, table_, limits_, sums));
+            progress_.add_rays(gather_tile(s_, tile, bounce_options(settings_, index), &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
         !in_background_);

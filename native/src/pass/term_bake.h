@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 
@@ -37,10 +38,13 @@ private:
     ReceiverRows prune(const ReceiverRows& rows, float share, uint32_t seed) const;
     std::vector<RayPlan> plan_rays();
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
-    NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups groups) const;
+    NoiseTrial try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
+                         DirectGroups groups) const;
     DirectGroups look_around(const Tile& tile, uint32_t samples, uint32_t seed) const;
     struct Evenness;
     Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
+    using PacketLight = std::array<float, kTileReceivers / kLanes>;
+    PacketLight stored_light(const Tile& tile) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
     float indirect_light(const Tile& tile) const;
@@ -70,6 +74,7 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
+    bool has_primary_;           ///< some lamp's direct light is not stored
     bool in_background_ = false; ///< shows no progress of its own
     uint32_t source_samples_ = kSourceSamples;
     double source_end_ = 0.0; ///< s, when find_source() was done

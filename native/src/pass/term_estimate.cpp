@@ -9,10 +9,10 @@ namespace {
 constexpr uint32_t kDarkSamples = 2; ///< per receiver and set, where the source pass found the set dark
 constexpr float kEvenLight = 0.8f;   ///< least over most light of neighbours that lie in no shadow's edge
 constexpr float kFullShare = 0.125f; ///< of a place's light: light sets with less get fewer samples, in proportion
-constexpr uint32_t kLeastSamples = 4;
-constexpr uint32_t kMostAims = 4;  ///< doors that a tile aims rays at
-constexpr float kAimShare = 0.02f; ///< of a tile's indirect light: doors that bring less are left to chance
-constexpr float kPlanShare = 0.1f; ///< terms below this share of a tile's light do not drive its ray counts
+constexpr uint32_t kFewSamples = 4;  ///< per receiver, of such sets
+constexpr uint32_t kMostAims = 4;    ///< doors that a tile aims rays at
+constexpr float kAimShare = 0.02f;   ///< of a tile's indirect light: doors that bring less are left to chance
+constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's light do not drive its ray counts
 
 } // namespace
 
@@ -57,12 +57,24 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
     return out;
 }
 
+/// Light that each packet of a tile will store, luminance summed over its receivers, or less: the source pass does
+/// not tell the lamps of no set apart whose direct light is stored and those whose is not.
+TermBaker::PacketLight TermBaker::stored_light(const Tile& tile) const {
+    PacketLight light{};
+    for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
+        float& sum = light[(r - tile.first) / kLanes];
+        sum += luminance(source_.total(r));
+        if (!has_primary_) continue;
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+            if (table_[e->term].set() == kNoElement) sum -= luminance(e->color);
+    }
+    return light;
+}
+
 /// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
 /// they do where the set is a small part of the light: its noise may be as much larger (pilot_noise).
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
-    std::array<float, kTileReceivers / kLanes> all{};
-    for (uint32_t local = 0; local < tile.count; ++local)
-        all[local / kLanes] += luminance(source_.total(tile.first + local));
+    const PacketLight all = stored_light(tile);
     for (const DirectGroups::Group& g : groups.groups()) {
         if (g.set == kNoElement) continue;
         for (uint32_t first = 0; first < tile.count; first += kLanes) {
@@ -74,8 +86,8 @@ void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
                 groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
             if (const float full = kFullShare * all[first / kLanes]; light.sum < full)
                 groups.limit(g.set, first / kLanes,
-                             std::max(kLeastSamples, static_cast<uint32_t>(
-                                                         std::ceil(static_cast<float>(g.samples) * light.sum / full))));
+                             std::max(kFewSamples, static_cast<uint32_t>(
+                                                       std::ceil(static_cast<float>(g.samples) * light.sum / full))));
         }
     }
 }
@@ -102,7 +114,7 @@ TileAims::Arrival TermBaker::arrival(const Ray& ray, const Hit& hit) const {
     return sum;
 }
 
-/// Irradiance that surfaces sent to a tile in the bounces so far, luminance, mean over its receivers.
+/// Irradiance that surfaces sent to a tile in the bounces, luminance, mean over its receivers.
 float TermBaker::indirect_light(const Tile& tile) const {
     double sum = 0.0;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
@@ -152,11 +164,11 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     if (plan.gather != 0) rays += aim_at_doors(aims, tile, plan.gather, seed);
     const TileAims* aimed = aims.empty() ? nullptr : &aims;
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
-                          table_, limits_, t.direct);
+                          limits_, t.direct);
     if (plan.gather != 0) {
         GatherOptions o = final_options(plan, settings_, groups, seed);
         o.aims = aimed;
-        rays += gather_tile(scene, tile, o, rows, table_, limits_, t.gather);
+        rays += gather_tile(scene, tile, o, rows, limits_, t.gather);
     }
     progress_.add_rays(rays);
     t.finish(tile.count);
@@ -189,10 +201,11 @@ MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
     return p;
 }
 
-NoiseTrial TermBaker::try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
+NoiseTrial TermBaker::try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
                                 DirectGroups groups) const {
     const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
     groups.allot(rays.direct, rays.direct);
+    limit_samples(groups, tile);
     const Estimate a = estimate(part, rays, groups, hash_combine(seed, 1)),
                    b = estimate(part, rays, groups, hash_combine(seed, 2));
     NoiseTrial trial{few, pilot_noise(a, part.count), {}, {}};
@@ -229,7 +242,8 @@ std::vector<RayPlan> TermBaker::plan_rays() {
             const Tile part = pilot_part(tile, k);
             groups.start_at(part.first - tile.first);
             pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
-            if (is_trial(i, k)) trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups);
+            if (is_trial(i, k))
+                trials[i / kTrialStep] = try_noise(tile, part, pilot[i * kPilotParts + k], large, groups);
         }
     });
     pilot_pace_ =

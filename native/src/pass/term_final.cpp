@@ -28,7 +28,6 @@ void FinalTile::thin_out(size_t begin) {
     const std::span<TermLight> own(light.begin() + static_cast<ptrdiff_t>(begin), light.end());
     for (const TermLight& l : own) crowded_out.of += strength(l);
     if (own.size() <= kStoredTerms) return;
-    crowded_out.receivers++;
     std::stable_sort(own.begin(), own.end(),
                      [&](const TermLight& a, const TermLight& b) { return strength(a) > strength(b); });
     size_t left = begin + kStoredTerms;
@@ -40,6 +39,7 @@ void FinalTile::thin_out(size_t begin) {
         crowded_out.light += strength(l);
         kept[l.term] -= strength(l), dropped[l.term] += strength(l);
     }
+    crowded_out.receivers += left < light.size();
     light.resize(left);
     std::sort(light.begin() + static_cast<ptrdiff_t>(begin), light.end(),
               [](const TermLight& a, const TermLight& b) { return a.term < b.term; });

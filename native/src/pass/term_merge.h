@@ -36,7 +36,7 @@ std::vector<Term> union_of_terms(const std::vector<const TermSums*>& sums);
 class TermIndex {
 public:
     TermIndex(const TermSums& sums, const std::vector<Term>& terms);
-    /// What a term brings to a lane; null if it never arrived in these sums.
+    /// What a term brings to a lane; null if it arrived neither there nor near it.
     const TermSums::Block* block(size_t term, uint32_t lane) const {
         return slot_[term] != TermSums::kNone ? sums_->block(slot_[term], lane) : nullptr;
     }

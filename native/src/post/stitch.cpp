@@ -2,6 +2,7 @@
 #include "post/stitch.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace ajar {
 
@@ -39,10 +40,7 @@ constexpr uint32_t kNowhere = 0xffffffffu;
 /// Sets of numbers that get joined.
 class Groups {
 public:
-    uint32_t add() {
-        parent_.push_back(static_cast<uint32_t>(parent_.size()));
-        return parent_.back();
-    }
+    explicit Groups(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
     uint32_t find(uint32_t i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
@@ -114,11 +112,10 @@ void SeamSolver::System::build(const std::vector<SeamPoint>& seams, const std::v
 
 /// Numbers the unknowns anew, within the piece they belong to.
 void SeamSolver::System::share_out(const std::vector<Row>& rows, const std::vector<uint32_t>& texel) {
-    Groups groups;
-    for (size_t i = 0; i < texel.size(); ++i) groups.add();
+    Groups groups(texel.size());
     for (const Row& r : rows)
         for (int k = 1; k < 8; ++k) groups.join(r.column[0], r.column[k]);
-    std::vector<uint32_t> piece_of(texel.size(), kNowhere), place(texel.size());
+    std::vector<uint32_t> piece_of(texel.size(), kNowhere);
     piece.assign(unknown.size(), kNowhere);
     for (uint32_t i = 0; i < texel.size(); ++i) {
         uint32_t& p = piece_of[groups.find(i)];
@@ -126,14 +123,13 @@ void SeamSolver::System::share_out(const std::vector<Row>& rows, const std::vect
             p = static_cast<uint32_t>(pieces.size());
             pieces.emplace_back();
         }
-        place[i] = static_cast<uint32_t>(pieces[p].texel.size());
+        unknown[texel[i]] = static_cast<uint32_t>(pieces[p].texel.size());
         pieces[p].texel.push_back(texel[i]);
         piece[texel[i]] = p;
-        unknown[texel[i]] = place[i];
     }
     for (Row r : rows) {
         Piece& p = pieces[piece[texel[r.column[0]]]];
-        for (uint32_t& c : r.column) c = place[c];
+        for (uint32_t& c : r.column) c = unknown[texel[c]];
         p.rows.push_back(r);
     }
 }

@@ -8,7 +8,7 @@
 namespace ajar {
 
 /// The emitter samples of one tile. Emitters of each light set are chosen among themselves, so that
-/// a dim set is lit as cleanly as a bright one; so are those of no set.
+/// a dim set is not lost beside a bright one; so are those of no set.
 class DirectGroups {
 public:
     struct Group {

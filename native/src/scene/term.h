@@ -84,7 +84,6 @@ public:
         for (uint32_t i = 0; i < count_; ++i)
             if (element_[i] == element) return state_[i] == state;
         if (count_ == kCapacity) {
-            overflowed_ = true;
             return false;
         }
         element_[count_] = static_cast<uint16_t>(element);
@@ -99,7 +98,6 @@ public:
     }
     /// Every term passes as it is.
     bool empty() const { return count_ == 0; }
-    bool overflowed() const { return overflowed_; }
 
     uint32_t count() const { return count_; }
     uint32_t element(uint32_t i) const { return element_[i]; }
@@ -111,7 +109,6 @@ private:
     uint16_t element_[kCapacity] = {};
     bool state_[kCapacity] = {};
     uint8_t count_ = 0, assumed_ = 0;
-    bool overflowed_ = false;
 };
 
 } // namespace ajar

@@ -26,7 +26,7 @@ private:
         std::once_flag found;
         std::vector<uint32_t> boxes;
     };
-    bool sees(const Tile& tile, const AimBox& box, uint64_t& rays) const;
+    bool sees(const Tile& tile, const AimBox& box, uint64_t& traced) const;
 
     const Tracer& tracer_;
     const LightmapReceivers& receivers_;

@@ -219,12 +219,10 @@ uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& grou
 }
 
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
-                       uint32_t seed, bool thrifty, const TermRows* rows, const TermTable& table,
-                       const TermLimits& limits, TermSums& sums) {
+                       uint32_t seed, bool thrifty, const TermRows* rows, const TermLimits& limits, TermSums& sums) {
     if (scene.scene.has_switches())
-        return run_groups(scene, groups, tile, mis, seed, thrifty,
-                          TermSink<true>(scene.scene, rows, table, limits, sums));
-    return run_groups(scene, groups, tile, mis, seed, thrifty, TermSink<false>(scene.scene, rows, table, limits, sums));
+        return run_groups(scene, groups, tile, mis, seed, thrifty, TermSink<true>(scene.scene, rows, limits, sums));
+    return run_groups(scene, groups, tile, mis, seed, thrifty, TermSink<false>(scene.scene, rows, limits, sums));
 }
 
 } // namespace ajar

@@ -22,7 +22,6 @@ uint64_t sample_direct(const GatherScene& scene, const DirectGroups::Group& grou
 /// rows: light of bright texels, null if there are none. thrifty: receivers at which the first samples
 /// of a set found nothing go on with its others in one of four cases, which then count four times.
 uint64_t sample_direct(const GatherScene& scene, const DirectGroups& groups, const Tile& tile, const MisCounts& mis,
-                       uint32_t seed, bool thrifty, const TermRows* rows, const TermTable& table,
-                       const TermLimits& limits, TermSums& sums);
+                       uint32_t seed, bool thrifty, const TermRows* rows, const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

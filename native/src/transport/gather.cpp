@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
-#include <span>
 
 #include "transport/gather_kernel.h"
 
@@ -15,7 +14,9 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
     struct Near {
         float distance; ///< m^2
         uint32_t texel, receiver;
-        bool operator<(const Near& other) const { return distance < other.distance; }
+        bool operator<(const Near& other) const {
+            return distance < other.distance || (distance == other.distance && texel < other.texel);
+        }
     } near[9];
     size_t count = 0;
     for (uint32_t ny = std::max(y, 1u) - 1; ny <= std::min(y + 1, page.height - 1); ++ny)
@@ -26,10 +27,11 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
             const Vec3 to = g.receivers.shown_origin(r) - p;
             near[count++] = {glm::dot(to, to), t, r};
         }
-    std::stable_sort(near, near + count);
-    for (const Near& n : std::span(near, count)) {
-        const Ray to{p + up, g.receivers.shown_origin(n.receiver) - p, 0.0f, 1.0f};
-        if (g.tracer.intersect(to, kMaskWall).triangle == kMiss) return n.texel;
+    for (; count > 0; --count) {
+        Near& next = *std::min_element(near, near + count);
+        const Ray to{p + up, g.receivers.shown_origin(next.receiver) - p, 0.0f, 1.0f};
+        if (g.tracer.intersect(to, kMaskWall).triangle == kMiss) return next.texel;
+        next = near[count - 1];
     }
     return texel;
 }
@@ -40,10 +42,10 @@ uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOpt
 }
 
 uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows,
-                     const TermTable& table, const TermLimits& limits, TermSums& sums) {
+                     const TermLimits& limits, TermSums& sums) {
     if (scene.scene.has_switches())
-        return run_gather(scene, tile, options, TermSink<true>(scene.scene, rows, table, limits, sums));
-    return run_gather(scene, tile, options, TermSink<false>(scene.scene, rows, table, limits, sums));
+        return run_gather(scene, tile, options, TermSink<true>(scene.scene, rows, limits, sums));
+    return run_gather(scene, tile, options, TermSink<false>(scene.scene, rows, limits, sums));
 }
 
 } // namespace ajar

@@ -52,6 +52,6 @@ struct TermLimits {
 /// The same for scenes with elements: rows holds each texel's radiance per term (null: none), sums
 /// collects per term.
 uint64_t gather_tile(const GatherScene& scene, const Tile& tile, const GatherOptions& options, const TermRows* rows,
-                     const TermTable& table, const TermLimits& limits, TermSums& sums);
+                     const TermLimits& limits, TermSums& sums);
 
 } // namespace ajar

@@ -63,11 +63,9 @@ public:
         Condition condition;
     };
 
-    TermSink(const Snapshot& scene, const TermRows* rows, const TermTable& table, const TermLimits& limits,
-             TermSums& sums)
+    TermSink(const Snapshot& scene, const TermRows* rows, const TermLimits& limits, TermSums& sums)
         : scene_(scene),
           rows_(rows),
-          table_(table),
           limits_(limits),
           sums_(sums),
           all_combine_(
@@ -146,7 +144,6 @@ private:
 
     const Snapshot& scene_;
     const TermRows* rows_;
-    const TermTable& table_;
     TermLimits limits_;
     TermSums& sums_;
     bool all_combine_; ///< no element opts out

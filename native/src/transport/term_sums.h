@@ -11,8 +11,8 @@
 
 namespace ajar {
 
-/// Running sums of one tile for every term that reaches it. A slot is made when its term first
-/// arrives, its sums where it does; a sample costs one cache line per term it carries.
+/// Running sums of one tile for every term that reaches it. A slot is made when its term is first
+/// asked for, its sums where it arrives; a sample costs one cache line per term it carries.
 class TermSums {
 public:
     /// One term at one receiver.
@@ -66,8 +66,8 @@ public:
     uint32_t times(uint32_t slot, uint32_t element, const Keeps& keeps) {
         if (element >= products_.size()) products_.resize(element + 1);
         std::vector<uint32_t>& row = products_[element];
-        if (slot >= row.size()) row.resize(slots() + slots() / 2, kUnknown);
-        if (row[slot] == kUnknown) {
+        if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
+        if (row[slot] == kNotAsked) {
             Term product = terms_[slot];
             row[slot] = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
         }
@@ -110,14 +110,14 @@ public:
     static constexpr uint32_t kNone = 0xffffffffu;
 
 private:
-    static constexpr uint32_t kUnknown = kNone - 1;
+    static constexpr uint32_t kNotAsked = kNone - 1;
     static constexpr uint32_t kGroups = kTileReceivers / kLanes, kChunkGroups = 64;
 
     struct Pending {
         uint32_t slot;
         Vec3 light;
     };
-    /// A product of a condition and a term that was asked for lately: few of them come again and again.
+    /// A term without a number that was asked for lately: few of them come again and again.
     struct Recent {
         Term term;
         uint32_t slot = kNone;
