@@ -136,7 +136,11 @@ void TermBaker::bounce(uint32_t index) {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             TermSums sums(table_);
-            progress_.add_rays(gather_tile(s_, tile, bounce_options(settings_, index), &radiance_, limits_, sums));
+            GatherOptions o = bounce_options(settings_, index);
+            TileAims aims(s_.receivers, tile);
+            const uint64_t rays = aim_at_doors(aims, tile, o.samples, o.seed);
+            o.aims = aims.empty() ? nullptr : &aims;
+            progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
         !in_background_);
