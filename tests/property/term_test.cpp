@@ -187,4 +187,45 @@ TEST(Terms, ABlackDoorReflectsNothingWhenClosed) {
     EXPECT_NEAR(a.mean_ratio, 1.0, 0.006);
 }
 
+struct Kept {
+    uint32_t most, fewest_sets; ///< terms of a texel; light sets of a texel
+};
+
+/// Twelve lamps, each a set, over a slab that takes all their light from the floor: a texel has 12 sets and as many
+/// products as strong as they.
+Kept crowded_texels(uint32_t light_patches) {
+    constexpr uint32_t kSize = 8, kSets = 12;
+    kit::Scene scene;
+    const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f}), slab = scene.element(AJAR_ELEMENT_TOGGLE, "slab");
+    const uint32_t page = scene.page(kSize, kSize);
+    scene.instance(scene.mesh(kit::plane(4.0f, 0.0f)), grey, page);
+    scene.current_switch = slab;
+    scene.instance(scene.mesh(kit::box({-8.0f, -8.0f, 1.0f}, {8.0f, 8.0f, 1.1f}, false)), grey, AJAR_NONE);
+    scene.current_switch = AJAR_NONE;
+    for (uint32_t i = 0; i < kSets; ++i) {
+        scene.current_set = scene.element(AJAR_ELEMENT_LIGHT_SET, ("lamp " + std::to_string(i)).c_str());
+        scene.point_light({0.3f * static_cast<float>(i) - 1.8f, 0.2f, 3.0f}, 20.0f + static_cast<float>(i), 0.05f);
+    }
+    scene.commit();
+    ajar_settings s = kit::settings(1, 64);
+    s.light_patches = light_patches;
+    const kit::Bake bake(scene, s);
+    std::vector<uint32_t> all(kSize * kSize, 0), sets(kSize * kSize, 0);
+    for (uint32_t t = 1; t < bake.terms().size(); ++t) {
+        const kit::Layer l = bake.term(t, kSize, kSize, page);
+        for (size_t i = 0; i < all.size(); ++i) {
+            const bool lit = l.data[3 * i] != 0.0f;
+            all[i] += lit, sets[i] += lit && bake.terms()[t].element_count == 1;
+        }
+    }
+    return {*std::max_element(all.begin(), all.end()), *std::min_element(sets.begin(), sets.end())};
+}
+
+TEST(Terms, WhereTheyCrowdWeakProductsGo) {
+    const Kept stored = crowded_texels(AJAR_LIGHT_PATCHES_NONE);
+    EXPECT_EQ(stored.fewest_sets, 12u);
+    EXPECT_EQ(stored.most, 12u + 8u); // of the 16 strongest, half are products
+    EXPECT_GE(crowded_texels(AJAR_LIGHT_PATCHES_MONO).most, 24u);
+}
+
 } // namespace
