@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/disjoint_set.h"
+
 namespace ajar {
 
 namespace {
@@ -36,20 +38,6 @@ struct Piece {
 };
 
 constexpr uint32_t kNowhere = 0xffffffffu;
-
-/// Sets of numbers that get joined.
-class Groups {
-public:
-    explicit Groups(size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    uint32_t find(uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) { parent_[find(b)] = find(a); }
-
-private:
-    std::vector<uint32_t> parent_;
-};
 
 } // namespace
 
@@ -112,13 +100,13 @@ void SeamSolver::System::build(const std::vector<SeamPoint>& seams, const std::v
 
 /// Numbers the unknowns anew, within the piece they belong to.
 void SeamSolver::System::share_out(const std::vector<Row>& rows, const std::vector<uint32_t>& texel) {
-    Groups groups(texel.size());
+    DisjointSet groups(texel.size());
     for (const Row& r : rows)
         for (int k = 1; k < 8; ++k) groups.join(r.column[0], r.column[k]);
     std::vector<uint32_t> piece_of(texel.size(), kNowhere);
     piece.assign(unknown.size(), kNowhere);
     for (uint32_t i = 0; i < texel.size(); ++i) {
-        uint32_t& p = piece_of[groups.find(i)];
+        uint32_t& p = piece_of[groups.root(i)];
         if (p == kNowhere) {
             p = static_cast<uint32_t>(pieces.size());
             pieces.emplace_back();
@@ -164,13 +152,9 @@ SeamSolver::~SeamSolver() = default;
 uint64_t SeamSolver::points() const { return system_->points; }
 
 void SeamSolver::solve(std::vector<Vec3>& value) const {
-    const Working here(Effect::seams);
-    for (const Piece& piece : system_->pieces) {
-        std::vector<Vec3> x0(piece.texel.size());
-        for (size_t i = 0; i < x0.size(); ++i) x0[i] = value[piece.texel[i]];
-        const std::vector<Vec3> change = piece.change(x0);
-        for (size_t i = 0; i < x0.size(); ++i) value[piece.texel[i]] = glm::max(x0[i] + change[i], Vec3(0.0f));
-    }
+    std::vector<uint32_t> all(value.size());
+    std::iota(all.begin(), all.end(), 0u);
+    solve(all, value, false);
 }
 
 void SeamSolver::solve(std::span<const uint32_t> texel, std::span<Vec3> value, bool may_be_negative) const {

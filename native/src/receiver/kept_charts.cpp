@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "base/disjoint_set.h"
 #include "receiver/bit_rows.h"
 
 namespace ajar {
@@ -27,20 +27,6 @@ double polygon_uv_area(const UnwrapMesh& mesh, uint32_t polygon) {
     }
     return 0.5 * twice;
 }
-
-struct DisjointSet {
-    std::vector<uint32_t> parent;
-    explicit DisjointSet(size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
-    uint32_t root(uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    }
-    void join(uint32_t a, uint32_t b) {
-        a = root(a);
-        b = root(b);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
-};
 
 /// An edge of a polygon in UV space, ends in a fixed order.
 struct UvEdge {

@@ -2,9 +2,9 @@
 #include "scene/mesh_patch.h"
 
 #include <bit>
-#include <numeric>
 #include <unordered_map>
 
+#include "base/disjoint_set.h"
 #include "base/hash.h"
 
 namespace ajar {
@@ -51,16 +51,10 @@ Vec3 normal_of(const Mesh& mesh, uint32_t triangle) {
     return normalize_or(glm::cross(mesh.positions[v[1]] - a, mesh.positions[v[2]] - a), Vec3(0.0f));
 }
 
-uint32_t root(std::vector<uint32_t>& parent, uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 } // namespace
 
 MeshPatches find_patches(const Mesh& mesh, float least_cosine) {
-    std::vector<uint32_t> parent(mesh.triangle_count());
-    std::iota(parent.begin(), parent.end(), 0u);
+    DisjointSet patches(mesh.triangle_count());
     MeshPatches out;
     out.closed = mesh.triangle_count() != 0;
     bool any = false;
@@ -72,14 +66,13 @@ MeshPatches find_patches(const Mesh& mesh, float least_cosine) {
         if (least_cosine > -1.0f &&
             glm::dot(normal_of(mesh, e.triangle_along), normal_of(mesh, e.triangle_against)) < least_cosine)
             continue;
-        const uint32_t a = root(parent, e.triangle_along), b = root(parent, e.triangle_against);
-        parent[std::max(a, b)] = std::min(a, b);
+        patches.join(e.triangle_along, e.triangle_against);
     }
     out.closed = out.closed && any;
     // The smallest triangle is the root, whatever the order of edges: numbers are reproducible.
-    out.patch.resize(parent.size());
-    for (uint32_t t = 0; t < parent.size(); ++t) {
-        const uint32_t r = root(parent, t);
+    out.patch.resize(mesh.triangle_count());
+    for (uint32_t t = 0; t < out.patch.size(); ++t) {
+        const uint32_t r = patches.root(t);
         out.patch[t] = r == t ? out.count++ : out.patch[r];
     }
     return out;
