@@ -35,9 +35,18 @@ public:
         return builder_.add_material(d);
     }
 
-    /// Three corners per triangle. With UVs (in [0,1], one per corner) it is lightmapped on page.
+    uint32_t toggle() {
+        ajar_element_desc d{};
+        d.name = "toggle";
+        d.kind = AJAR_ELEMENT_TOGGLE;
+        d.weight = 1.0f;
+        d.combine = 1;
+        return builder_.add_element(d);
+    }
+
+    /// Three corners per triangle. With UVs (in [0,1], one per corner) it is lightmapped on page. element: a toggle's.
     uint32_t object(const std::vector<Vec3>& corners, uint32_t material, const std::vector<Vec2>& uv = {},
-                    uint32_t page = AJAR_NONE) {
+                    uint32_t page = AJAR_NONE, uint32_t element = AJAR_NONE) {
         std::vector<uint32_t> vertex(corners.size());
         for (uint32_t i = 0; i < vertex.size(); ++i) vertex[i] = i;
         ajar_mesh_desc m{};
@@ -56,7 +65,8 @@ public:
         d.surface = uv.empty() ? AJAR_SURFACE_OCCLUDER : AJAR_SURFACE_LIGHTMAP;
         d.visibility = AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW;
         d.page = page;
-        d.element = d.light_set = AJAR_NONE;
+        d.element = element;
+        d.light_set = AJAR_NONE;
         d.uv_scale[0] = d.uv_scale[1] = 1.0f;
         return builder_.add_instance(d);
     }

@@ -55,6 +55,16 @@ void call_intersect1(RTCScene scene, RTCRayHit* ray) {
 #endif
 }
 
+void call_occluded1(RTCScene scene, RTCRay* ray) {
+#ifdef AJAR_EMBREE4
+    rtcOccluded1(scene, ray, nullptr);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene, &context, ray);
+#endif
+}
+
 RTCRayHit make_ray(const Ray& r, uint32_t mask) {
     RTCRayHit q{};
     q.ray.org_x = r.origin.x, q.ray.org_y = r.origin.y, q.ray.org_z = r.origin.z;
@@ -261,6 +271,17 @@ Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
     return hit;
 }
 
+bool Tracer::occluded(const Ray& ray, uint32_t mask) const {
+    for (const Impl::Part* part : {&impl_->fixed, &impl_->switches}) {
+        const bool asked = part == &impl_->fixed ? (mask & ~uint32_t{kMaskSwitch}) != 0 : (mask & kMaskSwitch) != 0;
+        if (!asked || part->empty()) continue;
+        RTCRayHit q = make_ray(ray, mask);
+        call_occluded1(part->scene, &q.ray);
+        if (q.ray.tfar < 0.0f) return true;
+    }
+    return false;
+}
+
 void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {
     out.clear();
     if (impl_->switches.empty()) return;
@@ -287,9 +308,6 @@ Vec3 Tracer::tint(Ray ray) const {
     return Vec3(0.0f);
 }
 
-Vec3 Tracer::transmittance(const Ray& ray) const {
-    const Hit hit = intersect(ray, kMaskShadowOpaque);
-    return hit.triangle == kMiss ? tint(ray) : Vec3(0.0f);
-}
+Vec3 Tracer::transmittance(const Ray& ray) const { return occluded(ray, kMaskShadowOpaque) ? Vec3(0.0f) : tint(ray); }
 
 } // namespace ajar

@@ -27,6 +27,8 @@ public:
     uint32_t crossing(const int32_t* valid, const RayPacket& rays, uint32_t mask) const;
     /// Nearest surface of mask.
     Hit intersect(const Ray& ray, uint32_t mask) const;
+    /// Whether intersect() would find something; faster.
+    bool occluded(const Ray& ray, uint32_t mask) const;
     /// Every switchable surface of mask along the ray, each once, nearest first; also those in one plane.
     void all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const;
     /// What is left of light along a shadow ray: 0 behind anything opaque, else the product of

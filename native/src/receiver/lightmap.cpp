@@ -260,7 +260,7 @@ void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
     const size_t n = spots.size();
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
     const auto sees = [&](const Spot& a, const Spot& b) {
-        return tracer.intersect({a.shown() + up, b.shown() - a.shown(), 0.0f, 1.0f}, kMaskWall).triangle == kMiss;
+        return !tracer.occluded({a.shown() + up, b.shown() - a.shown(), 0.0f, 1.0f}, kMaskWall);
     };
     uint32_t seen = 1;
     for (size_t b = 1; b < n; ++b) seen += sees(spots[0], spots[b]);
@@ -285,7 +285,7 @@ void Builder::find_sharing(const Tile& tile) {
         out.shares[r] = 1;
         for (uint32_t q = begin; q < end; ++q) {
             const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
-            if (q != r && tracer.intersect({p, to, 0.0f, 1.0f}, kMaskWall).triangle != kMiss) out.shares[r] = 0;
+            if (q != r && tracer.occluded({p, to, 0.0f, 1.0f}, kMaskWall)) out.shares[r] = 0;
         }
     }
 }

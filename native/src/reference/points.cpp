@@ -162,7 +162,7 @@ bool PointChooser::is_enclosed(const Place& p) const {
 bool PointChooser::is_covered(const Place& p) const {
     Ray up = view_from(p).along({0, 0, 1});
     up.tfar = kCoverHeight * texel_edge(world_.scene, p.triangle);
-    return world_.tracer.intersect(up, kMaskGather).triangle != kMiss;
+    return world_.tracer.occluded(up, kMaskGather);
 }
 
 bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {

@@ -83,8 +83,7 @@ LightChoice::Seen LightChoice::look(const Tracer& tracer, const LightmapReceiver
         const float cosine = glm::dot(s.direction, n);
         if (!(max_component(s.weight) > 0.0f) || cosine <= 0.0f) continue;
         ++seen.rays;
-        if (s.casts_shadow &&
-            tracer.intersect({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque).triangle != kMiss)
+        if (s.casts_shadow && tracer.occluded({p, s.direction, 0.0f, s.distance * (1.0f - 1e-4f)}, kMaskShadowOpaque))
             continue;
         ++seen.arrived;
         const float ratio = luminance(s.weight) * cosine / std::max(emitters_.importance(emitter, p, n), 1e-30f);

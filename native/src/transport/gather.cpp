@@ -30,7 +30,7 @@ uint32_t texel_on_side(const GatherScene& g, uint32_t triangle, uint32_t texel, 
     for (; count > 0; --count) {
         Near& next = *std::min_element(near, near + count);
         const Ray to{p + up, g.receivers.shown_origin(next.receiver) - p, 0.0f, 1.0f};
-        if (g.tracer.intersect(to, kMaskWall).triangle == kMiss) return next.texel;
+        if (!g.tracer.occluded(to, kMaskWall)) return next.texel;
         next = near[count - 1];
     }
     return texel;

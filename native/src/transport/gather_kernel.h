@@ -415,7 +415,7 @@ struct Gatherer {
         const Vec3 light = s.weight * (rounded * cosine * kInvPi / chance);
         const Ray ray{p, s.direction, 0.0f, shadow_end(g.tracer, s)};
         if (!s.casts_shadow) return sink.light(through, g.emitters.set_of(e), light);
-        if (g.tracer.intersect(ray, kMaskShadowOpaque).triangle != kMiss) return;
+        if (g.tracer.occluded(ray, kMaskShadowOpaque)) return;
         through_shadow<Sink>(g.scene, g.tracer, ray, through,
                              [&](const Through& t) { sink.light(t, g.emitters.set_of(e), light); });
     }

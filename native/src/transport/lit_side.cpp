@@ -116,7 +116,7 @@ struct Finder {
         if (e == EmitterSet::kNone || e == emitters.sky_emitter()) return false;
         const EmitterSample s = emitters.sample(e, p, owen_sobol(0, seed));
         if (!(glm::dot(s.direction, n) > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
-        return tracer.intersect({p, s.direction, 0.0f, shadow_end(tracer, s)}, kMaskWall).triangle == kMiss;
+        return !tracer.occluded({p, s.direction, 0.0f, shadow_end(tracer, s)}, kMaskWall);
     }
 
     View view(const Patch& patch, bool back, uint32_t seed) const {

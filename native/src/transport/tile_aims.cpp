@@ -42,27 +42,34 @@ uint64_t TileAims::add(const Tracer& tracer, const AimBox& box, const Look& look
     if (rays == 0) return 0;
     const Found found = probe(tracer, box, look, seed);
     if (!(found.worth > 1.0f) || !(found.light >= least) || !found.rarely_met) return found.rays;
-    Aim& aim = aims_.emplace_back(Aim{box, rays, {}});
-    for (uint32_t local = 0; local < tile_.count; ++local)
-        for (uint32_t position = 0; position < receivers_.positions_per_texel; ++position)
-            aim.view.push_back(box.view_from(origin(local, position)));
+    aims_.push_back(
+        {box, rays, std::vector<uint32_t>(size_t{tile_.count} * receivers_.positions_per_texel, kNotYet), {}});
     return found.rays;
+}
+
+const AimBox::View& TileAims::view(const Aim& aim, uint32_t local, uint32_t position) const {
+    uint32_t& number = aim.number[size_t{local} * receivers_.positions_per_texel + position];
+    if (number == kNotYet) {
+        number = static_cast<uint32_t>(aim.views.size());
+        aim.views.push_back(aim.box.view_from(origin(local, position)));
+    }
+    return aim.views[number];
 }
 
 float TileAims::density(uint32_t local, uint32_t position, const Vec3& w) const {
     float sum = 0.0f;
     for (const Aim& a : aims_) {
-        const float omega = a.view[place(local, position)].solid_angle;
-        if (omega > 0.0f && std::isfinite(a.box.distance(origin(local, position), w)))
+        if (!std::isfinite(a.box.distance(origin(local, position), w))) continue;
+        if (const float omega = view(a, local, position).solid_angle; omega > 0.0f)
             sum += static_cast<float>(a.rays) / omega;
     }
     return sum;
 }
 
 bool TileAims::sample(uint32_t aim, uint32_t local, uint32_t position, const Vec2& u, Vec3& w) const {
-    const AimBox::View& view = aims_[aim].view[place(local, position)];
-    if (!(view.solid_angle > 0.0f)) return false;
-    w = view.sample(u);
+    const AimBox::View& from = view(aims_[aim], local, position);
+    if (!(from.solid_angle > 0.0f)) return false;
+    w = from.sample(u);
     return true;
 }
 

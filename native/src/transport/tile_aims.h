@@ -10,7 +10,7 @@
 namespace ajar {
 
 /// Boxes that the receivers of one tile aim extra gather rays at, because few rays of the hemisphere
-/// would meet them (Seyb et al. 2020, section 4.1).
+/// would meet them (Seyb et al. 2020, section 4.1). For one thread: it remembers what it works out.
 class TileAims {
 public:
     TileAims(const LightmapReceivers& receivers, const Tile& tile) : receivers_(receivers), tile_(tile) {}
@@ -38,11 +38,11 @@ private:
     struct Aim {
         AimBox box;
         uint32_t rays;
-        std::vector<AimBox::View> view; ///< [receivers of the tile][positions]
+        mutable std::vector<uint32_t> number; ///< [receivers of the tile][positions] in views, or kNotYet
+        mutable std::vector<AimBox::View> views;
     };
-    size_t place(uint32_t local, uint32_t position) const {
-        return size_t{local} * receivers_.positions_per_texel + position;
-    }
+    static constexpr uint32_t kNotYet = 0xffffffffu;
+    const AimBox::View& view(const Aim& aim, uint32_t local, uint32_t position) const;
     const Vec3& origin(uint32_t local, uint32_t position) const {
         return receivers_.origins(tile_.first + local)[position];
     }
