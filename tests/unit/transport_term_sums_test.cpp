@@ -82,6 +82,15 @@ TEST_F(TermSumsTest, ARowAndSingleLightsAddUp) {
     }
 }
 
+TEST_F(TermSumsTest, TheTotalIsThatOfAllTerms) {
+    TermSums sums(table);
+    sums.arrive(sums.slot_of(set), Vec3(1.0f, 2.0f, 3.0f));
+    sums.arrive(sums.slot_of(with_door), Vec3(-0.25f));
+    sums.end_sample(kLane, 0, kUp, 2.0f);
+    EXPECT_EQ(sums.total(kLane), Vec3(1.5f, 3.5f, 5.5f));
+    EXPECT_EQ(sums.total(kLane + 1), Vec3(0.0f));
+}
+
 TEST_F(TermSumsTest, HarmonicsAreThoseOfTheDirection) {
     TermSums sums(table);
     const Vec3 w = glm::normalize(Vec3(0.3f, -0.4f, 0.8f));

@@ -42,6 +42,7 @@ bool TermBaker::gathers() const {
 }
 
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) {
+    if (second_) return total_rows(tile, gather, direct);
     const Working here(bookkeeping_);
     TileRows rows;
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
@@ -73,6 +74,26 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
     return rows;
 }
 
+TileRows TermBaker::total_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const {
+    const Working here(bookkeeping_);
+    TileRows rows;
+    rows.terms = {Term()};
+    std::vector<Vec3> gathered;
+    for (uint32_t lane = 0; lane < tile.count; ++lane)
+        gathered.push_back(gather.total(lane) * gather_scale(gather, lane));
+    for (uint32_t lane = 0; lane < tile.count; ++lane) {
+        const uint32_t r = tile.first + lane;
+        const auto [begin, end] = block_of(s_.scene, s_.receivers, tile, r);
+        Vec3 sum(0.0f);
+        float mates = 0.0f;
+        for (uint32_t q = begin; q < end; ++q)
+            if (q == r || may_share(s_.receivers, q, r)) sum += gathered[q - tile.first], mates += 1.0f;
+        rows.entries.push_back({0, sum / mates + (direct != nullptr ? direct->total(lane) : Vec3(0.0f))});
+        rows.count.push_back(1);
+    }
+    return rows;
+}
+
 /// Ends a pass: its rows become the bounce in hand and part of the source of the final gather.
 void TermBaker::take(std::vector<TileRows>& tiles) {
     const Working here(bookkeeping_);
@@ -81,7 +102,8 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(s_.receivers.count())));
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
-    if (direct_.first.size() == 1) direct_ = current_;
+    if (second_) return;
+    if (direct_ == nullptr) direct_ = std::make_shared<const ReceiverRows>(current_);
     find_thresholds();
     if (settings_.term_threshold > 0.0f)
         current_ = prune(current_, kBouncePrune,
@@ -111,7 +133,7 @@ void TermBaker::direct_source() {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
-            DirectGroups groups(s_.emitters, LightRoles::all, all_sets_);
+            DirectGroups groups(s_.emitters, LightRoles::all, second_ ? sets_of(tile) : all_sets_);
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
             TermSums direct(table_), gather(table_);
@@ -123,7 +145,7 @@ void TermBaker::direct_source() {
             tiles[i] = tile_rows(tile, gather, &direct);
             progress_.add_rays(rays);
         },
-        !in_background_);
+        !second_);
     take(tiles);
 }
 
@@ -143,7 +165,7 @@ void TermBaker::bounce(uint32_t index) {
             progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
-        !in_background_);
+        !second_);
     take(tiles);
 }
 
@@ -171,7 +193,7 @@ void TermBaker::find_thresholds() {
         met(table_.count(), 0.0);
     for (uint32_t r = 0; r + 1 < source_.first.size(); ++r)
         for (const TermColor* e = source_.begin(r); e != source_.end(r); ++e) {
-            const Vec3 direct = direct_.of(r, e->term);
+            const Vec3 direct = direct_->of(r, e->term);
             all[e->term] += std::abs(luminance(e->color));
             met[e->term] += 1.0;
             if (direct == Vec3(0.0f)) continue;
@@ -194,7 +216,7 @@ void TermBaker::find_thresholds() {
 bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& light) const {
     const uint32_t id = table_.find(term);
     if (id == TermTable::kUnknown) return false;
-    const bool direct = direct_.of(receiver, id) != Vec3(0.0f);
+    const bool direct = direct_->of(receiver, id) != Vec3(0.0f);
     if (direct && term.order() == 1 && term.set() != kNoElement) return true;
     const float level = std::abs(luminance(light.irradiance));
     return level > threshold_[id] && (direct || term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL ||
@@ -204,13 +226,13 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
 void TermBaker::find_source() {
     if (settings_.door_rays > 0.0f && doors_ == nullptr)
         doors_ = std::make_shared<BoxesInSight>(s_.tracer, s_.receivers, door_boxes(s_.scene), settings_.seed);
-    if (!in_background_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
+    if (!second_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
-    if (!in_background_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
+    if (!second_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
-    radiance_ =
-        rows_.radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune, settings_.seed) : source_,
-                            s_.receivers, s_.scene.texel_count());
+    radiance_ = rows_.radiance_rows(
+        settings_.term_threshold > 0.0f && !second_ ? prune(source_, kFinalPrune, settings_.seed) : source_,
+        s_.receivers, s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     source_end_ = progress_.elapsed();
 }

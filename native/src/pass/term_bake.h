@@ -31,6 +31,8 @@ private:
     void bounce(uint32_t index);
     /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
     TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct);
+    /// The same with all terms together as the base.
+    TileRows total_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const;
     void take(std::vector<TileRows>& tiles);
     EmitterSet find_bright_texels();
     void find_thresholds();
@@ -74,17 +76,20 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
-    bool has_primary_;           ///< some lamp's direct light is not stored
-    bool in_background_ = false; ///< shows no progress of its own
+    bool has_primary_; ///< some lamp's direct light is not stored
+    /// Shows no progress of its own and finds a source for all light together, as it is while everything is open,
+    /// there and lit.
+    bool second_ = false;
     uint32_t source_samples_ = kSourceSamples;
     double source_end_ = 0.0; ///< s, when find_source() was done
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;
     std::vector<uint32_t> all_sets_;
-    ReceiverRows direct_, current_, source_; ///< irradiance: of the sources, of the bounce in hand, of all bounces
-    TermRows radiance_;                      ///< what the next gather sees
-    std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
+    std::shared_ptr<const ReceiverRows> direct_; ///< irradiance of the sources
+    ReceiverRows current_, source_;              ///< of the bounce in hand, of all bounces
+    TermRows radiance_;                          ///< what the next gather sees
+    std::vector<float> threshold_; ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
     std::shared_ptr<BoxesInSight> doors_; ///< that rays are aimed at; null: none are
     double pilot_pace_ = 0.0;             ///< seconds per ray

@@ -20,7 +20,7 @@ constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's lig
 std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
     std::vector<uint32_t> sets;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
-        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
             if (table_[e->term].set() != kNoElement) sets.push_back(table_[e->term].set());
     std::sort(sets.begin(), sets.end());
     sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
@@ -49,7 +49,7 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
     Evenness out;
     for (uint32_t r = begin; r < end; ++r) {
         float light[2] = {};
-        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
             if (const Term& term = table_[e->term]; term.set() == set)
                 light[term.switch_count() != 0] += std::abs(luminance(e->color));
         for (int part = 0; part < 2; ++part) out.add(part, light[part]);
@@ -65,7 +65,7 @@ TermBaker::PacketLight TermBaker::stored_light(const Tile& tile) const {
         float& sum = light[(r - tile.first) / kLanes];
         sum += luminance(source_.total(r));
         if (!has_primary_) continue;
-        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
+        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
             if (table_[e->term].set() == kNoElement) sum -= luminance(e->color);
     }
     return light;
@@ -118,7 +118,7 @@ TileAims::Arrival TermBaker::arrival(const Ray& ray, const Hit& hit) const {
 float TermBaker::indirect_light(const Tile& tile) const {
     double sum = 0.0;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
-        sum += luminance(source_.total(r) - direct_.total(r));
+        sum += luminance(source_.total(r) - direct_->total(r));
     return static_cast<float>(std::max(sum, 0.0) / tile.count);
 }
 

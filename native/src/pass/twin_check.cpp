@@ -7,7 +7,7 @@ namespace ajar {
 
 namespace {
 
-constexpr size_t kMostStep = 4;    ///< of many tiles
+constexpr size_t kMostStep = 2;    ///< of many tiles
 constexpr size_t kLeastTiles = 16; ///< if there are as many
 constexpr size_t kFewParts = 8;
 constexpr double kLeastFactor = 0.25, kMostFactor = 4.0;

@@ -50,6 +50,12 @@ public:
     }
     /// Slots that brought light to a lane, in the order of their coming.
     const std::vector<uint32_t>& slots_at(uint32_t lane) const { return slots_at_[lane]; }
+    /// What all terms bring to a lane, added up.
+    Vec3 total(uint32_t lane) const {
+        Vec3 sum(0.0f);
+        for (const uint32_t slot : slots_at_[lane]) sum += block(slot, lane)->color();
+        return sum;
+    }
     uint32_t slot_of(uint32_t term_id) {
         uint32_t& s = slot_of_id_[term_id];
         if (s == kNone) s = make_slot(table_[term_id]);
@@ -64,37 +70,23 @@ public:
     /// already, kNone where keeps(product) is false or it would have too many elements. Worked out once.
     template <class Keeps>
     uint32_t times(uint32_t slot, uint32_t element, const Keeps& keeps) {
-        if (element >= products_.size()) products_.resize(element + 1);
-        std::vector<uint32_t>& row = products_[element];
-        if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
-        if (row[slot] == kNotAsked) {
-            Term product = terms_[slot];
-            row[slot] = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
-        }
-        return row[slot];
+        if (element < products_.size() && slot < products_[element].size())
+            if (const uint32_t product = products_[element][slot]; product != kNotAsked) return product;
+        return find_product(slot, element, keeps);
     }
     /// Collects what one sample brings; end_sample() books it.
     void arrive(uint32_t slot, const Vec3& light) {
-        if (mark_[slot] < pending_.size() && pending_[mark_[slot]].slot == slot) {
-            pending_[mark_[slot]].light += light;
+        const uint32_t mark = mark_[slot];
+        if (mark < pending_count_ && pending_[mark].slot == slot) {
+            pending_[mark].light += light;
             return;
         }
-        mark_[slot] = static_cast<uint32_t>(pending_.size());
-        pending_.push_back({slot, light});
+        mark_[slot] = pending_count_;
+        pending_[pending_count_++] = {slot, light};
     }
     /// The same for every entry of a row, times scale.
     void arrive(const TermColor* begin, const TermColor* end, const Vec3& scale) {
-        if (!pending_.empty()) {
-            for (; begin != end; ++begin) arrive(slot_of(begin->term), begin->color * scale);
-            return;
-        }
-        // A row names each term once.
-        pending_.resize(static_cast<size_t>(end - begin));
-        for (uint32_t i = 0; i < pending_.size(); ++i) {
-            const uint32_t slot = slot_of(begin[i].term);
-            mark_[slot] = i;
-            pending_[i] = {slot, begin[i].color * scale};
-        }
+        for (; begin != end; ++begin) arrive(slot_of(begin->term), begin->color * scale);
     }
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
@@ -124,6 +116,15 @@ private:
     };
     static constexpr size_t kRecent = 1024;
 
+    template <class Keeps>
+    [[gnu::noinline]] uint32_t find_product(uint32_t slot, uint32_t element, const Keeps& keeps) {
+        if (element >= products_.size()) products_.resize(element + 1);
+        Term product = terms_[slot];
+        const uint32_t found = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
+        std::vector<uint32_t>& row = products_[element];
+        if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
+        return row[slot] = found;
+    }
     uint32_t look_up(const Term& term) {
         const uint32_t id = table_.find(term);
         if (id != TermTable::kUnknown) return slot_of(id);
@@ -131,10 +132,11 @@ private:
         if (made) make_slot(term);
         return it->second;
     }
-    uint32_t make_slot(const Term& term) {
+    [[gnu::noinline]] uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
         groups_.emplace_back();
         mark_.push_back(kNone);
+        pending_.emplace_back();
         return slots() - 1;
     }
     Block& block_at(uint32_t slot, uint32_t lane) {
@@ -159,18 +161,20 @@ private:
     std::vector<Block> total_;
     std::vector<float> cosine_sum_, inside_;
     std::vector<uint32_t> mark_;
-    std::vector<Pending> pending_;
+    std::vector<Pending> pending_; ///< as many as slots, of which pending_count_ are of the present sample
+    uint32_t pending_count_ = 0;
     std::vector<Recent> recent_{kRecent};
 };
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
-    if (pending_.empty()) return;
+    if (pending_count_ == 0) return;
     static_assert(kShCount == kLanes + 1);
     alignas(32) float y[kShCount];
     float total = 0.0f;
     sh_basis(w.x, w.y, w.z, y);
     const Lanes basis = lanes(y);
-    for (const Pending& p : pending_) {
+    for (uint32_t i = 0; i < pending_count_; ++i) {
+        const Pending& p = pending_[i];
         Block& b = block_at(p.slot, lane);
         const Vec3 facing = p.light * scale;
         const float l = luminance(facing), along = l * w.z;
@@ -183,7 +187,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         total += along;
     }
     total_[lane].book(sample, total);
-    pending_.clear();
+    pending_count_ = 0;
 }
 
 } // namespace ajar
