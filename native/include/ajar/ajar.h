@@ -330,7 +330,8 @@ enum {
     AJAR_LAYER_IRRADIANCE = 0, /* 3 channels, W/m^2 along the shading normal */
     AJAR_LAYER_STDERR = 1,     /* 1 channel, standard error of its luminance, W/m^2 */
     AJAR_LAYER_SAMPLES = 2,    /* 1 channel, gather rays */
-    AJAR_LAYER_VALIDITY = 3,   /* 1 channel, 1 valid, 0.5 covered but invalid (filled), 0 not covered */
+    AJAR_LAYER_VALIDITY = 3,   /* 1 channel, 1 valid, 0.75 outside its chart (only bilinear lookups touch it),
+                                  0.5 covered but invalid (filled), 0 not covered */
     AJAR_LAYER_SH = 4,         /* 27 channels (coefficient-major RGB), radiance, tangent frame; keep_sh */
     AJAR_LAYER_ALBEDO = 5,     /* 3 channels, total hemispherical reflectance */
     AJAR_LAYER_AHD = 6,        /* 2 channels of raw 32 bit words: R11G11B10F, RGBA8 (bit-copied) */

@@ -15,7 +15,7 @@ struct PackagePage {
     std::span<const float> irradiance;           ///< 3 channels, W/m^2
     std::span<const float> stderr_;              ///< standard error of its luminance, W/m^2
     std::span<const float> samples;              ///< gather rays
-    std::span<const float> validity;             ///< 1 valid, 0.5 filled, 0 not covered
+    std::span<const float> validity;             ///< 1 valid, 0.75 outside its chart, 0.5 filled, 0 not covered
     std::span<const float> sh;                   ///< 27 channels, coefficient-major RGB; empty if not kept
     std::span<const uint32_t> packed_irradiance; ///< R11G11B10F
     std::span<const uint32_t> packed_direction;  ///< RGBA8, r in the low byte
