@@ -31,6 +31,13 @@ struct Known : ::testing::Test {
 
 using TermSumsTest = Known;
 
+TEST(Term, OfAnotherSetHasTheSameSwitches) {
+    const Term term = product(kSet, {kDoor, kToggle});
+    EXPECT_EQ(term.of_set(7), product(7, {kDoor, kToggle}));
+    EXPECT_EQ(term.of_set(kNoElement), product(kNoElement, {kDoor, kToggle}));
+    EXPECT_EQ(Term().of_set(kSet), Term(kSet));
+}
+
 TEST_F(TermSumsTest, ProductsAreThoseOfTheTerms) {
     TermSums sums(table);
     const uint32_t lamp = sums.slot_of(set), door = sums.times(lamp, kDoor, keep_all);
@@ -80,15 +87,6 @@ TEST_F(TermSumsTest, ARowAndSingleLightsAddUp) {
         EXPECT_EQ(sums.block(door, kLane)->squares, sums.block(lamp, kLane)->squares);
         EXPECT_NEAR(sums.total_squares(kLane), 36.0, 1e-4);
     }
-}
-
-TEST_F(TermSumsTest, TheTotalIsThatOfAllTerms) {
-    TermSums sums(table);
-    sums.arrive(sums.slot_of(set), Vec3(1.0f, 2.0f, 3.0f));
-    sums.arrive(sums.slot_of(with_door), Vec3(-0.25f));
-    sums.end_sample(kLane, 0, kUp, 2.0f);
-    EXPECT_EQ(sums.total(kLane), Vec3(1.5f, 3.5f, 5.5f));
-    EXPECT_EQ(sums.total(kLane + 1), Vec3(0.0f));
 }
 
 TEST_F(TermSumsTest, HarmonicsAreThoseOfTheDirection) {

@@ -61,6 +61,17 @@ TEST(TileAims, AreAsDenseAsTheyAreMany) {
     }
 }
 
+TEST(TileAims, TakeABoxThatSomebodyElseChose) {
+    const Field field;
+    TileAims aims(field.receivers, field.receivers.tiles[0]);
+    aims.add(field.box, kAimed);
+    ASSERT_EQ(aims.count(), 1u);
+    EXPECT_EQ(aims.box(0).center, field.box.center);
+    Vec3 w;
+    ASSERT_TRUE(aims.sample(0, 3, 0, Vec2(0.5f), w));
+    EXPECT_GT(aims.density(3, 0, w), 0.0f);
+}
+
 TEST(TileAims, LeaveOutBoxesThatBringLittle) {
     const Field field;
     EXPECT_TRUE(field.aims(1e-4f).empty());

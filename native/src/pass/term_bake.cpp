@@ -42,7 +42,6 @@ bool TermBaker::gathers() const {
 }
 
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) {
-    if (second_) return total_rows(tile, gather, direct);
     const Working here(bookkeeping_);
     TileRows rows;
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
@@ -74,40 +73,48 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
     return rows;
 }
 
-TileRows TermBaker::total_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const {
-    const Working here(bookkeeping_);
-    TileRows rows;
-    rows.terms = {Term()};
-    std::vector<Vec3> gathered;
-    for (uint32_t lane = 0; lane < tile.count; ++lane)
-        gathered.push_back(gather.total(lane) * gather_scale(gather, lane));
-    for (uint32_t lane = 0; lane < tile.count; ++lane) {
-        const uint32_t r = tile.first + lane;
-        const auto [begin, end] = block_of(s_.scene, s_.receivers, tile, r);
-        Vec3 sum(0.0f);
-        float mates = 0.0f;
-        for (uint32_t q = begin; q < end; ++q)
-            if (q == r || may_share(s_.receivers, q, r)) sum += gathered[q - tile.first], mates += 1.0f;
-        rows.entries.push_back({0, sum / mates + (direct != nullptr ? direct->total(lane) : Vec3(0.0f))});
-        rows.count.push_back(1);
-    }
-    return rows;
-}
-
 /// Ends a pass: its rows become the bounce in hand and part of the source of the final gather.
 void TermBaker::take(std::vector<TileRows>& tiles) {
     const Working here(bookkeeping_);
     current_ = rows_.merge_tiles(tiles, table_);
+    if (first_ != nullptr) current_ = sets_as_one(current_);
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(s_.receivers.count())));
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
-    if (second_) return;
-    if (direct_ == nullptr) direct_ = std::make_shared<const ReceiverRows>(current_);
+    if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
     if (settings_.term_threshold > 0.0f)
         current_ = prune(current_, kBouncePrune,
                          hash_combine(settings_.seed, static_cast<uint32_t>(result_.bounce_means.size())));
+}
+
+// Doors and toggles stay apart: what a product has no room for, the first leaves out too.
+ReceiverRows TermBaker::sets_as_one(const ReceiverRows& rows) {
+    const auto combines = [&](uint32_t e) { return s_.scene.elements[e].combines; };
+    const auto as_one = [&](const Term& term) {
+        if (term.set() == kNoElement) return term;
+        return term.of_set(*std::find_if(all_sets_.begin(), all_sets_.end(),
+                                         [&](uint32_t e) { return combines(e) == combines(term.set()); }));
+    };
+    std::vector<Term> terms;
+    for (uint32_t t = 0; t < table_.count(); ++t) terms.push_back(as_one(table_[t]));
+    table_.add(terms);
+    std::vector<uint32_t> number;
+    for (const Term& t : terms) number.push_back(table_.find(t));
+    return rows_.make_rows(s_.receivers.count(), [&](uint64_t row, std::vector<TermColor>& out) {
+        const auto r = static_cast<uint32_t>(row), begin = static_cast<uint32_t>(out.size());
+        for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e) {
+            const auto same = std::find_if(out.begin() + begin, out.end(),
+                                           [&](const TermColor& o) { return o.term == number[e->term]; });
+            if (same != out.end())
+                same->color += e->color;
+            else
+                out.push_back({number[e->term], e->color});
+        }
+        std::sort(out.begin() + begin, out.end(),
+                  [](const TermColor& a, const TermColor& b) { return a.term < b.term; });
+    });
 }
 
 /// What is too dim to matter alone once reflected, less than a texel would keep, is left out or made
@@ -133,7 +140,7 @@ void TermBaker::direct_source() {
         [&](size_t i) {
             const Tile& tile = s_.receivers.tiles[i];
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
-            DirectGroups groups(s_.emitters, LightRoles::all, second_ ? sets_of(tile) : all_sets_);
+            DirectGroups groups(s_.emitters, LightRoles::all, first_ != nullptr ? first_->sets_of(tile) : all_sets_);
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
             TermSums direct(table_), gather(table_);
@@ -145,7 +152,7 @@ void TermBaker::direct_source() {
             tiles[i] = tile_rows(tile, gather, &direct);
             progress_.add_rays(rays);
         },
-        !second_);
+        first_ == nullptr);
     take(tiles);
 }
 
@@ -153,6 +160,7 @@ void TermBaker::bounce(uint32_t index) {
     radiance_ = rows_.radiance_rows(current_, s_.receivers, s_.scene.texel_count());
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
+    aimed_.emplace_back(tiles.size());
     pool_.for_each(
         tiles.size(), progress_,
         [&](size_t i) {
@@ -160,12 +168,12 @@ void TermBaker::bounce(uint32_t index) {
             TermSums sums(table_);
             GatherOptions o = bounce_options(settings_, index);
             TileAims aims(s_.receivers, tile);
-            const uint64_t rays = aim_at_doors(aims, tile, o.samples, o.seed);
+            const uint64_t rays = aim_in_bounce(aims, index, i, o);
             o.aims = aims.empty() ? nullptr : &aims;
             progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
-        !second_);
+        first_ == nullptr);
     take(tiles);
 }
 
@@ -193,7 +201,7 @@ void TermBaker::find_thresholds() {
         met(table_.count(), 0.0);
     for (uint32_t r = 0; r + 1 < source_.first.size(); ++r)
         for (const TermColor* e = source_.begin(r); e != source_.end(r); ++e) {
-            const Vec3 direct = direct_->of(r, e->term);
+            const Vec3 direct = direct_.of(r, e->term);
             all[e->term] += std::abs(luminance(e->color));
             met[e->term] += 1.0;
             if (direct == Vec3(0.0f)) continue;
@@ -216,7 +224,7 @@ void TermBaker::find_thresholds() {
 bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& light) const {
     const uint32_t id = table_.find(term);
     if (id == TermTable::kUnknown) return false;
-    const bool direct = direct_->of(receiver, id) != Vec3(0.0f);
+    const bool direct = direct_.of(receiver, id) != Vec3(0.0f);
     if (direct && term.order() == 1 && term.set() != kNoElement) return true;
     const float level = std::abs(luminance(light.irradiance));
     return level > threshold_[id] && (direct || term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL ||
@@ -226,13 +234,13 @@ bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& ligh
 void TermBaker::find_source() {
     if (settings_.door_rays > 0.0f && doors_ == nullptr)
         doors_ = std::make_shared<BoxesInSight>(s_.tracer, s_.receivers, door_boxes(s_.scene), settings_.seed);
-    if (!second_) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
+    if (first_ == nullptr) progress_.begin_stage(AJAR_STAGE_DIRECT, 0.12f);
     direct_source();
-    if (!second_) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
+    if (first_ == nullptr) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
-    radiance_ = rows_.radiance_rows(
-        settings_.term_threshold > 0.0f && !second_ ? prune(source_, kFinalPrune, settings_.seed) : source_,
-        s_.receivers, s_.scene.texel_count());
+    radiance_ =
+        rows_.radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune, settings_.seed) : source_,
+                            s_.receivers, s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     source_end_ = progress_.elapsed();
 }

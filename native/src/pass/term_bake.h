@@ -31,9 +31,9 @@ private:
     void bounce(uint32_t index);
     /// Rows of one pass from its sums: gathered light shared inside blocks, plus direct light.
     TileRows tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct);
-    /// The same with all terms together as the base.
-    TileRows total_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) const;
     void take(std::vector<TileRows>& tiles);
+    /// Rows with one light set in place of all that combine alike.
+    ReceiverRows sets_as_one(const ReceiverRows& rows);
     EmitterSet find_bright_texels();
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
@@ -50,7 +50,10 @@ private:
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
     float indirect_light(const Tile& tile) const;
+    uint32_t rays_per_door(uint32_t samples) const;
     uint64_t aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const;
+    /// The same in a bounce of tile i, where the second source repeats what the first chose.
+    uint64_t aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const GatherOptions& options);
     Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
     void final_gather(std::vector<RayPlan>& plan);
@@ -67,6 +70,8 @@ private:
     /// Seconds that the time limit leaves for the passes if that much light gets stored beside the base.
     double time_left(double lights) const;
     std::vector<uint32_t> sets_of(const Tile& tile) const;
+    /// Knows what lights a tile.
+    const TermBaker& guide() const { return first_ != nullptr ? *first_ : *this; }
     GatherScene final_scene() const {
         return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
     }
@@ -77,24 +82,24 @@ private:
     Progress& progress_;
     double seconds_to_store_;
     bool has_primary_; ///< some lamp's direct light is not stored
-    /// Shows no progress of its own and finds a source for all light together, as it is while everything is open,
-    /// there and lit.
-    bool second_ = false;
+    /// Whose source this second one repeats for all light sets together, without progress of its own, to tell its
+    /// noise; null: this is the first.
+    const TermBaker* first_ = nullptr;
     uint32_t source_samples_ = kSourceSamples;
     double source_end_ = 0.0; ///< s, when find_source() was done
     TermLimits limits_;
     BakeResult result_;
     TermTable table_;
     std::vector<uint32_t> all_sets_;
-    std::shared_ptr<const ReceiverRows> direct_; ///< irradiance of the sources
-    ReceiverRows current_, source_;              ///< of the bounce in hand, of all bounces
-    TermRows radiance_;                          ///< what the next gather sees
-    std::vector<float> threshold_; ///< per term: least luminance worth keeping where it is not lit directly
+    ReceiverRows direct_, current_, source_; ///< irradiance: of the sources, of the bounce in hand, of all bounces
+    TermRows radiance_;                      ///< what the next gather sees
+    std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
-    std::shared_ptr<BoxesInSight> doors_; ///< that rays are aimed at; null: none are
-    double pilot_pace_ = 0.0;             ///< seconds per ray
-    std::unique_ptr<TilePace> pace_;      ///< where time is limited
-    Effect bookkeeping_;                  ///< what keeping terms apart counts as
+    std::shared_ptr<BoxesInSight> doors_;                 ///< that rays are aimed at; null: none are
+    std::vector<std::vector<std::vector<AimBox>>> aimed_; ///< [bounces][tiles] what the rays were aimed at
+    double pilot_pace_ = 0.0;                             ///< seconds per ray
+    std::unique_ptr<TilePace> pace_;                      ///< where time is limited
+    Effect bookkeeping_;                                  ///< what keeping terms apart counts as
     RowMaker rows_;
     MemoryBudget budget_; ///< of the pass in hand
 };

@@ -20,7 +20,7 @@ constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's lig
 std::vector<uint32_t> TermBaker::sets_of(const Tile& tile) const {
     std::vector<uint32_t> sets;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
-        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
             if (table_[e->term].set() != kNoElement) sets.push_back(table_[e->term].set());
     std::sort(sets.begin(), sets.end());
     sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
@@ -49,7 +49,7 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
     Evenness out;
     for (uint32_t r = begin; r < end; ++r) {
         float light[2] = {};
-        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
             if (const Term& term = table_[e->term]; term.set() == set)
                 light[term.switch_count() != 0] += std::abs(luminance(e->color));
         for (int part = 0; part < 2; ++part) out.add(part, light[part]);
@@ -65,7 +65,7 @@ TermBaker::PacketLight TermBaker::stored_light(const Tile& tile) const {
         float& sum = light[(r - tile.first) / kLanes];
         sum += luminance(source_.total(r));
         if (!has_primary_) continue;
-        for (const TermColor* e = direct_->begin(r); e != direct_->end(r); ++e)
+        for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
             if (table_[e->term].set() == kNoElement) sum -= luminance(e->color);
     }
     return light;
@@ -118,34 +118,47 @@ TileAims::Arrival TermBaker::arrival(const Ray& ray, const Hit& hit) const {
 float TermBaker::indirect_light(const Tile& tile) const {
     double sum = 0.0;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
-        sum += luminance(source_.total(r) - direct_->total(r));
+        sum += luminance(source_.total(r) - direct_.total(r));
     return static_cast<float>(std::max(sum, 0.0) / tile.count);
+}
+
+uint32_t TermBaker::rays_per_door(uint32_t samples) const {
+    const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
+    return (share + 1) & ~1u;
+}
+
+uint64_t TermBaker::aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const GatherOptions& options) {
+    if (first_ != nullptr) {
+        for (const AimBox& box : first_->aimed_[index - 1][i]) aims.add(box, rays_per_door(options.samples));
+        return 0;
+    }
+    const uint64_t rays = aim_at_doors(aims, s_.receivers.tiles[i], options.samples, options.seed);
+    for (uint32_t aim = 0; aim < aims.count(); ++aim) aimed_[index - 1][i].push_back(aims.box(aim));
+    return rays;
 }
 
 /// Rays into the doors through which light of some account comes to the tile.
 uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const {
     if (doors_ == nullptr || doors_->boxes().empty()) return 0;
     const Working here(Effect::doors);
-    const auto share = static_cast<uint32_t>(std::lround(settings_.door_rays * static_cast<float>(samples)));
-    const uint32_t even = (share + 1) & ~1u;
-    const float least = kAimShare * indirect_light(tile);
+    const float least = kAimShare * guide().indirect_light(tile);
     const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[tile.first]);
     uint64_t rays = 0;
     for (const uint32_t door : doors_->from(tile.first, rays)) {
         if (aims.count() == kMostAims) break;
         rays += aims.add(
-            s_.tracer, doors_->boxes()[door], [&](const Ray& r, const Hit& h) { return arrival(r, h); }, even, least,
-            own_seed);
+            s_.tracer, doors_->boxes()[door], [&](const Ray& r, const Hit& h) { return guide().arrival(r, h); },
+            rays_per_door(samples), least, own_seed);
     }
     return rays;
 }
 
 /// The tile's emitters, with visibility asked for and samples shared out.
 DirectGroups TermBaker::look_around(const Tile& tile, uint32_t samples, uint32_t seed) const {
-    DirectGroups groups(*final_emitters_, LightRoles::stored, sets_of(tile));
+    DirectGroups groups(*final_emitters_, LightRoles::stored, guide().sets_of(tile));
     progress_.add_rays(groups.begin(s_.tracer, s_.receivers, tile, samples, samples,
                                     hash_combine(seed, s_.receivers.texel[tile.first])));
-    limit_samples(groups, tile);
+    guide().limit_samples(groups, tile);
     return groups;
 }
 

@@ -175,12 +175,9 @@ TermBaker::Estimate TermBaker::answer(size_t i, const RayPlan& plan, uint32_t se
 std::unique_ptr<TermBaker> TermBaker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
-    other->second_ = true;
+    other->first_ = this;
     other->source_samples_ = other_source_samples(settings_);
     other->doors_ = doors_;
-    other->direct_ = direct_;
-    other->table_ = table_;
-    other->threshold_ = threshold_;
     try {
         other->find_source();
     } catch (const Error& e) {

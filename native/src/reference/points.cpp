@@ -174,8 +174,7 @@ bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {
     };
     const Vec3 from = above(point.place);
     for (int i = 0; i < kSideProbes; ++i)
-        if (world_.tracer.intersect({from, above(place_in_texel(point, random)) - from, 0.0f, 1.0f}, kMaskWall)
-                .triangle != kMiss)
+        if (world_.tracer.occluded({from, above(place_in_texel(point, random)) - from, 0.0f, 1.0f}, kMaskWall))
             return true;
     return false;
 }

@@ -57,6 +57,12 @@ public:
             if (element(i) != element_id) out.multiply(element(i));
         return out;
     }
+    /// The same doors and toggles with another light set, or none.
+    Term of_set(uint32_t light_set) const {
+        Term out(light_set);
+        out.key_ |= key_ & 0xffffffffffffull;
+        return out;
+    }
     uint64_t key() const { return key_; }
     bool operator==(const Term&) const = default;
     bool operator<(const Term& other) const { return key_ < other.key_; }

@@ -50,12 +50,6 @@ public:
     }
     /// Slots that brought light to a lane, in the order of their coming.
     const std::vector<uint32_t>& slots_at(uint32_t lane) const { return slots_at_[lane]; }
-    /// What all terms bring to a lane, added up.
-    Vec3 total(uint32_t lane) const {
-        Vec3 sum(0.0f);
-        for (const uint32_t slot : slots_at_[lane]) sum += block(slot, lane)->color();
-        return sum;
-    }
     uint32_t slot_of(uint32_t term_id) {
         uint32_t& s = slot_of_id_[term_id];
         if (s == kNone) s = make_slot(table_[term_id]);

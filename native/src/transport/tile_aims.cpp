@@ -42,9 +42,13 @@ uint64_t TileAims::add(const Tracer& tracer, const AimBox& box, const Look& look
     if (rays == 0) return 0;
     const Found found = probe(tracer, box, look, seed);
     if (!(found.worth > 1.0f) || !(found.light >= least) || !found.rarely_met) return found.rays;
+    add(box, rays);
+    return found.rays;
+}
+
+void TileAims::add(const AimBox& box, uint32_t rays) {
     aims_.push_back(
         {box, rays, std::vector<uint32_t>(size_t{tile_.count} * receivers_.positions_per_texel, kNotYet), {}});
-    return found.rays;
 }
 
 const AimBox::View& TileAims::view(const Aim& aim, uint32_t local, uint32_t position) const {

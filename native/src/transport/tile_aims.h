@@ -26,9 +26,13 @@ public:
     /// least: irradiance, as luminance. Returns the rays traced to find out.
     uint64_t add(const Tracer& tracer, const AimBox& box, const Look& look, uint32_t rays, float least, uint32_t seed);
 
+    /// Adds a box in any case.
+    void add(const AimBox& box, uint32_t rays);
+
     bool empty() const { return aims_.empty(); }
     uint32_t count() const { return static_cast<uint32_t>(aims_.size()); }
     uint32_t rays(uint32_t aim) const { return aims_[aim].rays; }
+    const AimBox& box(uint32_t aim) const { return aims_[aim].box; }
     /// Expected number of aimed rays per steradian around direction w from a position of a receiver.
     float density(uint32_t local, uint32_t position, const Vec3& w) const;
     /// Direction from there into a box for u in [0,1)^2; false if the box has no side towards it.
