@@ -25,43 +25,26 @@ static_assert(offsetof(RayPacket, triangle) == offsetof(RTCRayHit8, hit) + offse
 constexpr int kMaxLayers = 256; ///< transmissive surfaces one shadow ray may cross
 constexpr size_t kPadding = 16; ///< bytes that the ray tracer may read behind the last vertex
 
-void call_intersect8(const int32_t* valid, RTCScene scene, RTCRayHit8* rays) {
+/// Asks a query of Embree's. Version 4 takes arguments behind the rays, version 3 a context before them.
+template <auto Query, class Rays>
+void ask(RTCScene scene, Rays* rays) {
 #ifdef AJAR_EMBREE4
-    rtcIntersect8(valid, scene, rays, nullptr);
+    Query(scene, rays, nullptr);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect8(valid, scene, &context, rays);
+    Query(scene, &context, rays);
 #endif
 }
 
-void call_occluded8(const int32_t* valid, RTCScene scene, RTCRay8* rays) {
+template <auto Query, class Rays>
+void ask(const int32_t* valid, RTCScene scene, Rays* rays) {
 #ifdef AJAR_EMBREE4
-    rtcOccluded8(valid, scene, rays, nullptr);
+    Query(valid, scene, rays, nullptr);
 #else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded8(valid, scene, &context, rays);
-#endif
-}
-
-void call_intersect1(RTCScene scene, RTCRayHit* ray) {
-#ifdef AJAR_EMBREE4
-    rtcIntersect1(scene, ray, nullptr);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene, &context, ray);
-#endif
-}
-
-void call_occluded1(RTCScene scene, RTCRay* ray) {
-#ifdef AJAR_EMBREE4
-    rtcOccluded1(scene, ray, nullptr);
-#else
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene, &context, ray);
+    Query(valid, scene, &context, rays);
 #endif
 }
 
@@ -205,11 +188,19 @@ struct Tracer::Impl {
     /// Nearest hit of one part; a miss leaves out as it is.
     void intersect(const Part& part, const Snapshot& s, const Ray& ray, uint32_t mask, Hit& out) const {
         RTCRayHit q = make_ray(ray, mask);
-        call_intersect1(part.scene, &q);
+        ask<rtcIntersect1>(part.scene, &q);
         if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
         const uint32_t triangle = part.triangle(q.hit.geomID, q.hit.primID);
         const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
         out = {triangle, q.hit.u, q.hit.v, q.ray.tfar, (side > 0.0f) != s.triangles[triangle].mirrored};
+    }
+
+    /// Whether a ray meets something of a part.
+    bool occluded(const Part& part, const Ray& ray, uint32_t mask) const {
+        if (mask == 0 || part.empty()) return false;
+        RTCRayHit q = make_ray(ray, mask);
+        ask<rtcOccluded1>(part.scene, &q.ray);
+        return q.ray.tfar < 0.0f;
     }
 };
 
@@ -236,14 +227,14 @@ Tracer::~Tracer() = default;
 
 void Tracer::intersect(const int32_t* valid, RayPacket& rays) const {
     const Impl::Part& part = impl_->fixed;
-    call_intersect8(valid, part.scene, reinterpret_cast<RTCRayHit8*>(&rays));
+    ask<rtcIntersect8>(valid, part.scene, reinterpret_cast<RTCRayHit8*>(&rays));
     for (uint32_t i = 0; i < kLanes; ++i)
         rays.triangle[i] =
             rays.group[i] == RTC_INVALID_GEOMETRY_ID ? kMiss : part.triangle(rays.group[i], rays.triangle[i]);
 }
 
 void Tracer::occluded(const int32_t* valid, RayPacket& rays) const {
-    call_occluded8(valid, impl_->fixed.scene, reinterpret_cast<RTCRay8*>(&rays));
+    ask<rtcOccluded8>(valid, impl_->fixed.scene, reinterpret_cast<RTCRay8*>(&rays));
 }
 
 uint32_t Tracer::crossing(const int32_t* valid, const RayPacket& rays, uint32_t mask) const {
@@ -255,7 +246,7 @@ uint32_t Tracer::crossing(const int32_t* valid, const RayPacket& rays, uint32_t 
         wanted[i] = valid[i] != 0 && rays.tfar[i] >= 0.0f ? -1 : 0;
         copy.mask[i] = mask;
     }
-    call_occluded8(wanted, impl_->switches.scene, &copy);
+    ask<rtcOccluded8>(wanted, impl_->switches.scene, &copy);
     uint32_t lanes = 0;
     for (uint32_t i = 0; i < kLanes; ++i) lanes |= uint32_t{wanted[i] != 0 && copy.tfar[i] < 0.0f} << i;
     return lanes;
@@ -272,14 +263,8 @@ Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
 }
 
 bool Tracer::occluded(const Ray& ray, uint32_t mask) const {
-    for (const Impl::Part* part : {&impl_->fixed, &impl_->switches}) {
-        const bool asked = part == &impl_->fixed ? (mask & ~uint32_t{kMaskSwitch}) != 0 : (mask & kMaskSwitch) != 0;
-        if (!asked || part->empty()) continue;
-        RTCRayHit q = make_ray(ray, mask);
-        call_occluded1(part->scene, &q.ray);
-        if (q.ray.tfar < 0.0f) return true;
-    }
-    return false;
+    return impl_->occluded(impl_->fixed, ray, mask & ~uint32_t{kMaskSwitch}) ||
+           impl_->occluded(impl_->switches, ray, mask & kMaskSwitch);
 }
 
 void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {

@@ -64,23 +64,37 @@ public:
     /// already, kNone where keeps(product) is false or it would have too many elements. Worked out once.
     template <class Keeps>
     uint32_t times(uint32_t slot, uint32_t element, const Keeps& keeps) {
-        if (element < products_.size() && slot < products_[element].size())
-            if (const uint32_t product = products_[element][slot]; product != kNotAsked) return product;
-        return find_product(slot, element, keeps);
+        if (element >= products_.size()) products_.resize(element + 1);
+        std::vector<uint32_t>& row = products_[element];
+        if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
+        if (row[slot] == kNotAsked) {
+            Term product = terms_[slot];
+            row[slot] = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
+        }
+        return row[slot];
     }
     /// Collects what one sample brings; end_sample() books it.
     void arrive(uint32_t slot, const Vec3& light) {
-        const uint32_t mark = mark_[slot];
-        if (mark < pending_count_ && pending_[mark].slot == slot) {
-            pending_[mark].light += light;
+        if (mark_[slot] < pending_.size() && pending_[mark_[slot]].slot == slot) {
+            pending_[mark_[slot]].light += light;
             return;
         }
-        mark_[slot] = pending_count_;
-        pending_[pending_count_++] = {slot, light};
+        mark_[slot] = static_cast<uint32_t>(pending_.size());
+        pending_.push_back({slot, light});
     }
     /// The same for every entry of a row, times scale.
     void arrive(const TermColor* begin, const TermColor* end, const Vec3& scale) {
-        for (; begin != end; ++begin) arrive(slot_of(begin->term), begin->color * scale);
+        if (!pending_.empty()) {
+            for (; begin != end; ++begin) arrive(slot_of(begin->term), begin->color * scale);
+            return;
+        }
+        // A row names each term once.
+        pending_.resize(static_cast<size_t>(end - begin));
+        for (uint32_t i = 0; i < pending_.size(); ++i) {
+            const uint32_t slot = slot_of(begin[i].term);
+            mark_[slot] = i;
+            pending_[i] = {slot, begin[i].color * scale};
+        }
     }
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
@@ -110,15 +124,6 @@ private:
     };
     static constexpr size_t kRecent = 1024;
 
-    template <class Keeps>
-    [[gnu::noinline]] uint32_t find_product(uint32_t slot, uint32_t element, const Keeps& keeps) {
-        if (element >= products_.size()) products_.resize(element + 1);
-        Term product = terms_[slot];
-        const uint32_t found = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
-        std::vector<uint32_t>& row = products_[element];
-        if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
-        return row[slot] = found;
-    }
     uint32_t look_up(const Term& term) {
         const uint32_t id = table_.find(term);
         if (id != TermTable::kUnknown) return slot_of(id);
@@ -126,11 +131,10 @@ private:
         if (made) make_slot(term);
         return it->second;
     }
-    [[gnu::noinline]] uint32_t make_slot(const Term& term) {
+    uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
         groups_.emplace_back();
         mark_.push_back(kNone);
-        pending_.emplace_back();
         return slots() - 1;
     }
     Block& block_at(uint32_t slot, uint32_t lane) {
@@ -155,20 +159,18 @@ private:
     std::vector<Block> total_;
     std::vector<float> cosine_sum_, inside_;
     std::vector<uint32_t> mark_;
-    std::vector<Pending> pending_; ///< as many as slots, of which pending_count_ are of the present sample
-    uint32_t pending_count_ = 0;
+    std::vector<Pending> pending_;
     std::vector<Recent> recent_{kRecent};
 };
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
-    if (pending_count_ == 0) return;
+    if (pending_.empty()) return;
     static_assert(kShCount == kLanes + 1);
     alignas(32) float y[kShCount];
     float total = 0.0f;
     sh_basis(w.x, w.y, w.z, y);
     const Lanes basis = lanes(y);
-    for (uint32_t i = 0; i < pending_count_; ++i) {
-        const Pending& p = pending_[i];
+    for (const Pending& p : pending_) {
         Block& b = block_at(p.slot, lane);
         const Vec3 facing = p.light * scale;
         const float l = luminance(facing), along = l * w.z;
@@ -181,7 +183,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         total += along;
     }
     total_[lane].book(sample, total);
-    pending_count_ = 0;
+    pending_.clear();
 }
 
 } // namespace ajar
