@@ -117,6 +117,30 @@ TEST(LightChoice, AWeakLampHasItsShareWhereItIsTheNearest) {
     for (uint32_t r = kCount - kFew; r < kCount; ++r) EXPECT_GT(choice.chance(r, weak), 0.02f) << r;
 }
 
+TEST(LightChoice, ExpectsTheUnshadowedLightOfWhatItSees) {
+    SnapshotKit kit;
+    kit.object(parallelogram({-10, -10, 0}, {20, 0, 0}, {0, 20, 0}), kit.material(Vec3(0.5f)));
+    kit.light(kit.lamp(AJAR_LIGHT_POINT, {1.0f, 1.0f, 2.0f}, 10.0f));
+    const Snapshot& scene = kit.commit();
+    ThreadPool pool(1);
+    Progress progress;
+    const EmitterSet emitters(scene, pool, progress);
+    const Tracer tracer(scene);
+    LightmapReceivers receivers;
+    for (uint32_t r = 0; r < kReceivers; ++r) {
+        receivers.texel.push_back(r);
+        receivers.frame.push_back(Frame{});
+        receivers.positions.push_back(Vec3(DVec3(r, 1.0, 0.001) - scene.origin));
+    }
+    LightChoice choice(emitters, LightRoles::all, emitters.of_set(kNoElement));
+    choice.begin(tracer, receivers, {0, kReceivers}, 5);
+    choice.start_at(2);
+    for (uint32_t r = 0; r < kReceivers; ++r) {
+        const float unshadowed = emitters.importance(0, receivers.positions[r], Vec3(0, 0, 1));
+        EXPECT_NEAR(choice.expected_light(r), unshadowed, 0.05f * unshadowed) << "receivers count from the first";
+    }
+}
+
 TEST(LightChoice, PrimaryLampsAreNotStored) {
     Hall hall(60);
     ASSERT_NE(hall.primary, EmitterSet::kNone);

@@ -47,6 +47,9 @@ private:
     Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
     using PacketLight = std::array<float, kTileReceivers / kLanes>;
     PacketLight stored_light(const Tile& tile) const;
+    /// Limits the samples of a set at receivers first to end of a tile; its luminance there, summed.
+    float limit_set(DirectGroups& groups, const DirectGroups::Group& g, const Tile& tile, uint32_t first,
+                    uint32_t end) const;
     void limit_samples(DirectGroups& groups, const Tile& tile) const;
     TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
     float indirect_light(const Tile& tile) const;

@@ -14,6 +14,13 @@ constexpr uint32_t kMostAims = 4;    ///< doors that a tile aims rays at
 constexpr float kAimShare = 0.02f;   ///< of a tile's indirect light: doors that bring less are left to chance
 constexpr float kPlanShare = 0.1f;   ///< terms below this share of a tile's light do not drive its ray counts
 
+/// Luminance that receivers first to end of a tile probably get from some emitters, summed.
+float expected_light(const LightChoice& emitters, uint32_t first, uint32_t end) {
+    float sum = 0.0f;
+    for (uint32_t lane = first; lane < end; ++lane) sum += emitters.expected_light(lane);
+    return sum;
+}
+
 } // namespace
 
 /// Light sets that shine on the tile directly, as the source pass saw it.
@@ -71,25 +78,31 @@ TermBaker::PacketLight TermBaker::stored_light(const Tile& tile) const {
     return light;
 }
 
+float TermBaker::limit_set(DirectGroups& groups, const DirectGroups::Group& g, const Tile& tile, uint32_t first,
+                           uint32_t end) const {
+    const Evenness seen = evenness(g.set, tile.first + first, tile.first + end);
+    if (seen.is_dark())
+        groups.limit(g.set, first / kLanes, kDarkSamples);
+    else if (seen.is_even())
+        groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
+    return seen.sum;
+}
+
 /// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
-/// they do where the set is a small part of the light: its noise may be as much larger (pilot_noise).
+/// they do where a group is a small part of the light: its noise may be as much larger (pilot_noise). What the source
+/// pass saw of the emitters of no set holds the light of bright texels not: there counts what is expected of them.
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
     const PacketLight all = stored_light(tile);
-    for (const DirectGroups::Group& g : groups.groups()) {
-        if (g.set == kNoElement) continue;
+    for (const DirectGroups::Group& g : groups.groups())
         for (uint32_t first = 0; first < tile.count; first += kLanes) {
-            const Evenness light =
-                evenness(g.set, tile.first + first, tile.first + std::min(first + kLanes, tile.count));
-            if (light.is_dark())
-                groups.limit(g.set, first / kLanes, kDarkSamples);
-            else if (light.is_even())
-                groups.limit(g.set, first / kLanes, std::max(g.samples / 4, kDarkSamples));
-            if (const float full = kFullShare * all[first / kLanes]; light.sum < full)
-                groups.limit(g.set, first / kLanes,
-                             std::max(kFewSamples, static_cast<uint32_t>(
-                                                       std::ceil(static_cast<float>(g.samples) * light.sum / full))));
+            const uint32_t packet = first / kLanes, end = std::min(first + kLanes, tile.count);
+            const float light =
+                g.set == kNoElement ? expected_light(g.choice, first, end) : limit_set(groups, g, tile, first, end);
+            if (const float full = kFullShare * all[packet]; light < full)
+                groups.limit(g.set, packet,
+                             std::max(kFewSamples,
+                                      static_cast<uint32_t>(std::ceil(static_cast<float>(g.samples) * light / full))));
         }
-    }
 }
 
 /// Luminance that comes back along a ray, and each term of it over what a texel keeps of that term, emission and

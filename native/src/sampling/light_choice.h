@@ -28,6 +28,11 @@ public:
     bool seen() const { return seen_; }
     /// Rough variance of one sample over its squared mean, from the visibility rays; 0 if they saw nothing.
     float relative_variance() const { return relative_variance_; }
+    /// What a receiver probably gets from all of them, unshadowed irradiance times visibility, luminance. Counts from
+    /// the tile's first receiver, whatever start_at() says.
+    float expected_light(uint32_t receiver) const {
+        return candidates_.empty() ? 0.0f : running_[size_t{receiver} * (fine_ + 1) + fine_];
+    }
     /// From now on receivers count from this one of the tile on.
     void start_at(uint32_t local) { base_ = local; }
     /// Emitter for u in [0,1) and the chance it had; u is rescaled to be used again.
