@@ -89,8 +89,8 @@ float TermBaker::limit_set(DirectGroups& groups, const DirectGroups::Group& g, c
 }
 
 /// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
-/// they do where a group is a small part of the light: its noise may be as much larger (pilot_noise). What the source
-/// pass saw of the emitters of no set holds the light of bright texels not: there counts what is expected of them.
+/// they do where a group is a small part of the light: its noise may be as much larger (pilot_noise). The source
+/// pass knows no bright texels, which are of no set: of that group counts what its emitters are expected to bring.
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
     const PacketLight all = stored_light(tile);
     for (const DirectGroups::Group& g : groups.groups())
