@@ -100,10 +100,10 @@ Spent spent(const std::vector<MeasuredNoise>& pilot, const std::vector<RayPlan>&
 TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
     constexpr size_t kTileCount = 12;
     const std::vector<MeasuredNoise> noise = mixed_pilot(kTileCount);
-    const std::vector<Tile> tiles(kTileCount, Tile{0, 64});
+    const std::vector<double> receivers(kTileCount, 64.0);
     NoiseGoal goal{0.01f, 0.0f, {1u << 20, 1u << 20}, true, {}}, even = goal;
     std::vector<RayPlan> wanted = plan_tiles(noise, kPilot, goal), plan = wanted;
-    const TilePace pace(noise, kPilot, tiles, goal, wanted);
+    const TilePace pace(noise, kPilot, receivers, goal, wanted);
     EXPECT_TRUE(pace.fit(0, spent(noise, wanted).rays / 20.0, plan));
     const Spent own = spent(noise, plan);
     EXPECT_LE(own.rays, spent(noise, wanted).rays / 20.0);
@@ -113,10 +113,10 @@ TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
 }
 
 TEST(GatherPace, TilesThatAreDoneKeepTheirRays) {
-    const std::vector<Tile> tiles(32, Tile{0, 64});
+    const std::vector<double> receivers(32, 64.0);
     const std::vector<MeasuredNoise> noise = mixed_pilot(32);
     std::vector<RayPlan> wanted(32, {1024, 1024}), plan = wanted;
-    const TilePace pace(noise, kPilot, tiles, kGoal, wanted);
+    const TilePace pace(noise, kPilot, receivers, kGoal, wanted);
     EXPECT_FALSE(pace.fit(0, 1e9, plan));
     EXPECT_TRUE(pace.fit(8, 1e4, plan));
     const Rounds rounds{32};

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace {
@@ -53,11 +54,29 @@ TEST(TwinCheck, AddsTheNoiseOfTheSource) {
 
 TEST(TwinCheck, LeavesOutWhatIsNotValid) {
     EvenBake bake;
-    bake.receivers.ring.assign(kTiles, 1);
-    EXPECT_EQ(bake.calibrate(0.02, 0.0, 4.0, 0.04).factor, 1.0f);
-    bake.receivers.ring.assign(kTiles, 0);
     bake.result.inside.assign(kTiles, 1.0f);
     EXPECT_EQ(bake.calibrate(0.02, 0.0, 4.0, 0.04).factor, 1.0f);
+}
+
+TEST(TwinCheck, LooksAtReceiversOnCharts) {
+    LightmapReceivers receivers;
+    constexpr uint32_t kTile = 100, kOnCharts = 21;
+    for (uint32_t i = 0; i < 64; ++i) receivers.tiles.push_back({i * kTile, i == 0 ? 0 : kTile});
+    for (uint32_t r = 0; r < 64 * kTile; ++r) {
+        receivers.ring.push_back(r % kTile >= kOnCharts);
+        receivers.coarse_from.push_back(r);
+    }
+    std::vector<bool> seen(kOnCharts, false);
+    for (size_t i = 1; i < receivers.tiles.size(); ++i) {
+        const Tile part = TwinCheck::part(receivers, i);
+        ASSERT_GT(part.count, 0u);
+        for (uint32_t r = part.first; r < part.first + part.count; ++r) {
+            ASSERT_LT(r - receivers.tiles[i].first, kOnCharts);
+            seen[r - receivers.tiles[i].first] = true;
+        }
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), kOnCharts);
+    EXPECT_EQ(TwinCheck::part(receivers, 0).count, 0u);
 }
 
 TEST(TwinCheck, FewBrightSamplesAreAWideSpread) {

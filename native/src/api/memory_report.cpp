@@ -19,7 +19,7 @@ uint64_t scene_bytes(const Snapshot& s) {
 
 uint64_t receiver_bytes(const LightmapReceivers& r) {
     return bytes(r.tiles, r.texel, r.triangle, r.frame, r.positions, r.albedo, r.texel_size, r.full, r.whole, r.cut,
-                 r.shares, r.of_texel, r.ring) +
+                 r.shares, r.of_texel, r.coarse_from, r.ring) +
            bytes(r.moved_row, r.moved);
 }
 

@@ -28,7 +28,9 @@ void Baker::set_radiance(const std::vector<Vec3>& irradiance) {
             Vec4(irradiance[r] * s_.receivers.albedo[r] * kInvPi, s_.receivers.cut[r] != 0 ? float{kTexelCut} : 0.0f);
 }
 
-void Baker::keep_bounce(const std::vector<Vec3>& irradiance) {
+/// Ends a pass that made irradiance.
+void Baker::keep_bounce(std::vector<Vec3>& irradiance) {
+    for (uint32_t r = 0; r < s_.receivers.count(); ++r) irradiance[r] = irradiance[s_.receivers.coarse_from[r]];
     double sum = 0.0;
     for (const Vec3& e : irradiance) sum += luminance(e);
     result_.bounce_means.push_back(irradiance.empty() ? 0.0 : sum / static_cast<double>(irradiance.size()));
@@ -42,7 +44,8 @@ void Baker::direct_source() {
     pool_.for_each(
         s_.receivers.tiles.size(), progress_,
         [&](size_t i) {
-            const Tile& tile = s_.receivers.tiles[i];
+            const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
+            if (tile.count == 0) return;
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
             DirectGroups groups(s_.emitters, LightRoles::all, {});
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, source_samples_,
@@ -68,7 +71,7 @@ void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3
         const uint32_t r = tile.first + lane;
         Vec3 total(0.0f);
         float count = 0.0f;
-        for (auto [q, end] = block_of(s_.scene, s_.receivers, tile, r); q < end; ++q) {
+        for (const uint32_t q : block_of(s_.scene, s_.receivers, r)) {
             if (q != r && !may_share(s_.receivers, q, r)) continue;
             total += gathered(sums, q - tile.first);
             count += 1.0f;
@@ -82,7 +85,8 @@ void Baker::bounce(uint32_t index) {
     pool_.for_each(
         s_.receivers.tiles.size(), progress_,
         [&](size_t i) {
-            const Tile& tile = s_.receivers.tiles[i];
+            const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
+            if (tile.count == 0) return;
             auto sums = make_sums(false);
             progress_.add_rays(gather_tile(s_, tile, bounce_options(settings_, index), radiance_.data(), *sums));
             share_quads(tile, *sums, current_);

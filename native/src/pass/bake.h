@@ -56,7 +56,7 @@ public:
     BakeResult run();
 
 private:
-    /// What the packet of a tile that is checked got beyond the first rays, and the weight of that answer.
+    /// What a packet of a tile got beyond the first rays, and the weight of that answer.
     struct FurtherRays {
         RayPlan rays;
         float share = 0.0f;
@@ -70,17 +70,20 @@ private:
     void share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const;
     /// Emitters of the final gather: the scene's, and the texels that stand out.
     EmitterSet find_bright_texels();
-    void keep_bounce(const std::vector<Vec3>& irradiance);
+    void keep_bounce(std::vector<Vec3>& irradiance);
     void plan_rays();
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
                          uint32_t seed);
     DirectGroups look_around(const Tile& tile, uint32_t seed);
     TileEstimate estimate(const Tile& tile, RayPlan plan, DirectGroups& groups, PacketChoice packets, uint32_t seed,
                           bool keep_sh);
-    FurtherRays refine(size_t tile, const TileEstimate& first, DirectGroups& groups, uint32_t seed, TileLight& light);
+    std::vector<FurtherRays> refine(const Tile& part, const TileEstimate& first, const NoiseGoal& goal,
+                                    DirectGroups& groups, uint32_t seed, TileLight& light);
     void final_gather();
     void gather_in_rounds();
     void finish_tile(size_t tile);
+    std::vector<FurtherRays> finish_part(const Tile& part, const RayPlan& plan, const NoiseGoal& goal,
+                                         DirectGroups& groups, uint32_t seed);
     /// A second answer for the part of tile i that is checked.
     TileLight second_answer(size_t i, uint32_t seed);
     /// A baker with another source of fewer rays, to see how much the source's noise matters; null without bounces.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pass/bake_parts.h"
 
+#include <bit>
+
 namespace ajar {
 
 namespace {
@@ -8,6 +10,7 @@ namespace {
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
 constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces after the first may take
 constexpr uint32_t kLeastBounceSamples = 16;
+constexpr uint32_t kLeastRingRays = 16;
 constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
 
 } // namespace
@@ -51,10 +54,25 @@ std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const
     return out;
 }
 
+RayPlan ring_rays(const RayPlan& plan) {
+    const auto part = [](uint32_t rays) {
+        return std::max(std::bit_floor(rays / kRingShare), std::min(rays, kLeastRingRays));
+    };
+    return {part(plan.gather), part(plan.direct)};
+}
+
+std::vector<double> ray_weights(const LightmapReceivers& receivers) {
+    std::vector<double> weights;
+    for (const Tile& tile : receivers.tiles) {
+        const TileParts parts = split(receivers, tile);
+        weights.push_back(parts.own.count + parts.ring.count / double{kRingShare});
+    }
+    return weights;
+}
+
 Tile pilot_part(const Tile& tile, uint32_t part) {
-    const uint32_t count = std::min(kPilotReceivers, tile.count);
-    const uint32_t first = std::min((tile.count / kPilotParts * part) & ~7u, tile.count - count);
-    return {tile.first + first, count};
+    const uint32_t packets = (tile.count + kLanes - 1) / kLanes, first = packets * part / kPilotParts * kLanes;
+    return {tile.first + first, std::min(kPilotReceivers, tile.count - first)};
 }
 
 float dark_level(std::vector<float> levels) {

@@ -25,6 +25,15 @@ struct RayPlan {
     uint32_t gather = 0, direct = 0;
 };
 
+/// The rays of a ring receiver are a quarter of what its place would get: lookups give it at most half their weight,
+/// so twice the standard error there makes none of them much noisier than the texels of the chart are.
+inline constexpr uint32_t kRingShare = 4;
+RayPlan ring_rays(const RayPlan& plan);
+/// Whether receivers of the ring get that: else rays follow neither a noise nor a time, and all get the same number.
+inline bool spares_rays(const ajar_settings& s) { return s.noise_target > 0.0f || s.time_limit > 0.0f; }
+/// Receivers of each tile as rays count them then: those of the ring are a part of one.
+std::vector<double> ray_weights(const LightmapReceivers& receivers);
+
 /// Light and noise of some receivers with given ray counts, pooled.
 struct MeasuredNoise {
     float level = 0.0f;           ///< mean luminance of the irradiance

@@ -2,6 +2,7 @@
 // The final gather of a scene without elements: first rays for every receiver, more for those packets
 // of receivers whose light is still too noisy.
 #include <array>
+#include <numeric>
 
 #include "pass/bake.h"
 #include "pass/tile_estimate.h"
@@ -111,7 +112,7 @@ void Baker::plan_rays() {
         const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
         DirectGroups groups = look_around(tiles[i], seed);
         for (uint32_t k = 0; k < kPilotParts; ++k) {
-            const Tile part = pilot_part(tiles[i], k);
+            const Tile part = pilot_part(split(s_.receivers, tiles[i]).typical(), k);
             groups.start_at(part.first - tiles[i].first);
             mean_noise(estimate(part, small, groups, {}, seed, false), 0, part.count, pilot[i * kPilotParts + k]);
             if (is_trial(i, k))
@@ -123,35 +124,36 @@ void Baker::plan_rays() {
     if (!timed) return;
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
-    pace_ = std::make_unique<GatherPace>(std::move(pilot), small, std::move(tiles), s_.receivers.count());
+    const std::vector<double> weights = ray_weights(s_.receivers);
+    pace_ = std::make_unique<GatherPace>(std::move(pilot), small, std::move(tiles),
+                                         std::reduce(weights.begin(), weights.end()));
     result_.time_limited = pace_->begin(time_left(), seconds_per_ray, first_, goal_);
 }
 
-/// Adds further rays to the packets of tile i that need them, all packets with one need together.
-Baker::FurtherRays Baker::refine(size_t i, const TileEstimate& first, DirectGroups& groups, uint32_t seed,
-                                 TileLight& light) {
-    const Tile& tile = s_.receivers.tiles[i];
-    const std::vector<MeasuredNoise> noise = packet_noise(first, tile.count);
-    std::vector<RayPlan> more;
-    for (const MeasuredNoise& n : noise) more.push_back(missing_rays(n, first.plan, goal_));
-    std::vector<float> share(noise.size(), 0.0f);
+/// Adds further rays to the packets of a part of a tile that need them, all packets with one need together.
+std::vector<Baker::FurtherRays> Baker::refine(const Tile& part, const TileEstimate& first, const NoiseGoal& goal,
+                                              DirectGroups& groups, uint32_t seed, TileLight& light) {
+    const std::vector<MeasuredNoise> noise = packet_noise(first, part.count);
+    std::vector<FurtherRays> more;
+    for (const MeasuredNoise& n : noise) more.push_back({missing_rays(n, first.plan, goal)});
     std::vector<bool> done(noise.size(), false);
     for (size_t p = 0; p < noise.size(); ++p) {
-        if (done[p] || (more[p].gather | more[p].direct) == 0) continue;
+        const RayPlan plan = more[p].rays;
+        if (done[p] || (plan.gather | plan.direct) == 0) continue;
         Packets packets{};
         for (size_t q = p; q < noise.size(); ++q)
-            if (more[q].gather == more[p].gather && more[q].direct == more[p].direct) packets[q] = 1, done[q] = true;
-        const TileEstimate further = estimate(tile, more[p], groups, {packets.data()}, seed, settings_.keep_sh != 0);
+            if (more[q].rays.gather == plan.gather && more[q].rays.direct == plan.direct)
+                packets[q] = 1, done[q] = true;
+        const TileEstimate further = estimate(part, plan, groups, {packets.data()}, seed, settings_.keep_sh != 0);
         for (uint32_t q = 0; q < noise.size(); ++q) {
             if (packets[q] == 0) continue;
-            share[q] = share_of_more(noise[q], first.plan, further.plan, goal_);
-            light.add(further, q * kLanes, std::min((q + 1) * kLanes, tile.count), share[q]);
+            more[q].share = share_of_more(noise[q], first.plan, further.plan, goal);
+            light.add(further, q * kLanes, std::min((q + 1) * kLanes, part.count), more[q].share);
         }
     }
     for (uint32_t q = 0; q < noise.size(); ++q)
-        light.add(first, q * kLanes, std::min((q + 1) * kLanes, tile.count), 1.0f - share[q]);
-    const uint32_t watched = (TwinCheck::part(tile, i).first - tile.first) / kLanes;
-    return {more[watched], share[watched]};
+        light.add(first, q * kLanes, std::min((q + 1) * kLanes, part.count), 1.0f - more[q].share);
+    return more;
 }
 
 void Baker::final_gather() {
@@ -186,29 +188,46 @@ double Baker::time_left() const {
 /// Every round takes tiles from all over the scene, so each takes about as long.
 void Baker::gather_in_rounds() {
     const Rounds rounds{s_.receivers.tiles.size()};
-    uint32_t done = 0;
+    const std::vector<double> weights = ray_weights(s_.receivers);
+    const double all = std::reduce(weights.begin(), weights.end());
+    double done = 0.0;
     for (size_t round = 0; round < rounds.count(); ++round) {
         const double start = progress_.elapsed();
-        uint32_t receivers = 0;
-        for (size_t k = 0; k < rounds.size(round); ++k) receivers += s_.receivers.tiles[rounds.tile(round, k)].count;
+        double receivers = 0.0;
+        for (size_t k = 0; k < rounds.size(round); ++k) receivers += weights[rounds.tile(round, k)];
         pool_.for_each(
             rounds.size(round), progress_, [&](size_t k) { finish_tile(rounds.tile(round, k)); }, false);
-        progress_.update(static_cast<float>(done += receivers) / static_cast<float>(s_.receivers.count()));
+        progress_.update(static_cast<float>((done += receivers) / all));
         if (pace_->follow(receivers, progress_.elapsed() - start, time_left(), first_, goal_))
             result_.time_limited = true;
     }
 }
 
 void Baker::finish_tile(size_t i) {
-    const bool keep_sh = settings_.keep_sh != 0;
     const Tile& tile = s_.receivers.tiles[i];
     const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
     DirectGroups groups = look_around(tile, seed);
+    const TileParts parts = split(s_.receivers, tile);
+    const bool spares = spares_rays(settings_);
+    NoiseGoal ring = goal_;
+    if (spares) ring.target *= std::sqrt(float{kRingShare}), ring.shortage *= float{kRingShare};
+    const std::vector<FurtherRays> further = finish_part(parts.own, first_, goal_, groups, seed);
+    groups.start_at(parts.ring.first - tile.first);
+    finish_part(parts.ring, spares ? ring_rays(first_) : first_, ring, groups, seed);
+    const uint32_t watched = (TwinCheck::part(s_.receivers, i).first - tile.first) / kLanes;
+    if (watched < further.size()) further_[i] = further[watched];
+}
+
+/// Finishes one part of a tile; returns the further rays of its packets.
+std::vector<Baker::FurtherRays> Baker::finish_part(const Tile& part, const RayPlan& plan, const NoiseGoal& goal,
+                                                   DirectGroups& groups, uint32_t seed) {
+    if (part.count == 0) return {};
+    const bool keep_sh = settings_.keep_sh != 0;
     auto light = std::make_unique<TileLight>();
-    const TileEstimate first = estimate(tile, first_, groups, {}, seed, keep_sh);
-    further_[i] = refine(i, first, groups, hash_combine(seed, 1), *light);
-    for (uint32_t lane = 0; lane < tile.count; ++lane) {
-        const size_t r = tile.first + lane;
+    const TileEstimate first = estimate(part, plan, groups, {}, seed, keep_sh);
+    std::vector<FurtherRays> further = refine(part, first, goal, groups, hash_combine(seed, 1), *light);
+    for (uint32_t lane = 0; lane < part.count; ++lane) {
+        const size_t r = part.first + lane;
         result_.irradiance[r] = light->irradiance[lane];
         result_.standard_error[r] = static_cast<float>(std::sqrt(light->variance[lane]));
         result_.samples[r] = light->samples[lane];
@@ -217,10 +236,11 @@ void Baker::finish_tile(size_t i) {
         if (keep_sh)
             std::copy_n(&light->sh_rgb[size_t{lane} * 3 * kShCount], 3 * kShCount, &result_.sh_rgb[r * 3 * kShCount]);
     }
+    return further;
 }
 
 TileLight Baker::second_answer(size_t i, uint32_t seed) {
-    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(tile, i);
+    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(s_.receivers, i);
     const FurtherRays& further = further_[i];
     DirectGroups groups = look_around(tile, seed);
     groups.start_at(part.first - tile.first);
@@ -248,7 +268,8 @@ void Baker::calibrate_error() {
         check.count(), progress_,
         [&](size_t k) {
             const size_t i = k * check.step();
-            const Tile part = TwinCheck::part(s_.receivers.tiles[i], i);
+            const Tile part = TwinCheck::part(s_.receivers, i);
+            if (part.count == 0) return;
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
             const TileLight second = second_answer(i, seed);
             TileLight third;

@@ -31,7 +31,7 @@ float least_shortage(Affordable&& affordable) {
 } // namespace
 
 GatherPace::GatherPace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
-                       uint32_t receivers)
+                       double receivers)
     : pilot_(std::move(pilot)), pilot_rays_(pilot_rays), tiles_(std::move(tiles)), left_(receivers) {
     for (const Tile& t : tiles_) pilot_receivers_ += t.count;
 }
@@ -49,7 +49,7 @@ void GatherPace::fit(double affordable, const RayPlan& first, NoiseGoal& goal) c
 }
 
 bool GatherPace::begin(double seconds, double seconds_per_ray, RayPlan& first, NoiseGoal& goal) {
-    const double affordable = std::max(kPlannedPart * seconds, 0.0) / (seconds_per_ray * std::max(left_, 1u));
+    const double affordable = std::max(kPlannedPart * seconds, 0.0) / (seconds_per_ray * std::max(left_, 1.0));
     if (rays(first, goal) <= affordable) return false;
     if (!(goal.target > 0.0f)) {
         goal.target = kLeastTarget;
@@ -61,39 +61,39 @@ bool GatherPace::begin(double seconds, double seconds_per_ray, RayPlan& first, N
     return true;
 }
 
-bool GatherPace::follow(uint32_t receivers, double seconds_taken, double seconds_left, const RayPlan& first,
+bool GatherPace::follow(double receivers, double seconds_taken, double seconds_left, const RayPlan& first,
                         NoiseGoal& goal) {
     predicted_ += rays(first, goal) * receivers;
     taken_ += seconds_taken;
     left_ -= std::min(receivers, left_);
-    if (left_ == 0 || !(goal.target > 0.0f) || !(taken_ > 0.0)) return false;
+    if (left_ <= 0.0 || !(goal.target > 0.0f) || !(taken_ > 0.0)) return false;
     fit(std::max(kPlannedPart * seconds_left, 0.0) * predicted_ / (taken_ * left_), first, goal);
     return goal.shortage > 0.0f;
 }
 
-TilePace::TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
+TilePace::TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<double> receivers,
                    const NoiseGoal& goal, std::vector<RayPlan> wanted)
     : pilot_(std::move(pilot)),
       pilot_rays_(pilot_rays),
-      tiles_(std::move(tiles)),
+      receivers_(std::move(receivers)),
       goal_(goal),
       wanted_(std::move(wanted)) {
     goal_.target = std::max(goal_.target, kLeastTarget);
 }
 
 double TilePace::rays(const std::vector<RayPlan>& plan, size_t round) const {
-    const Rounds rounds{tiles_.size()};
+    const Rounds rounds{receivers_.size()};
     double sum = 0.0;
-    for (size_t i = 0; i < tiles_.size(); ++i)
-        if (rounds.of(i) >= round) sum += double(plan[i].gather + plan[i].direct) * tiles_[i].count;
+    for (size_t i = 0; i < receivers_.size(); ++i)
+        if (rounds.of(i) >= round) sum += double(plan[i].gather + plan[i].direct) * receivers_[i];
     return sum;
 }
 
 void TilePace::plan_with(float shortage, size_t round, std::vector<RayPlan>& plan) const {
     NoiseGoal goal = goal_;
     goal.shortage = shortage;
-    const Rounds rounds{tiles_.size()};
-    for (size_t i = 0; i < tiles_.size(); ++i) {
+    const Rounds rounds{receivers_.size()};
+    for (size_t i = 0; i < receivers_.size(); ++i) {
         if (rounds.of(i) < round) continue;
         const RayPlan p = shortage > 0.0f ? plan_tile(&pilot_[i * kPilotParts], pilot_rays_, goal) : wanted_[i];
         plan[i] = {std::min(wanted_[i].gather, p.gather), std::min(wanted_[i].direct, p.direct)};
@@ -110,7 +110,7 @@ bool TilePace::fit(size_t round, double affordable, std::vector<RayPlan>& plan) 
     for (bool changed = true; changed && rays(plan, round) > affordable;) {
         changed = false;
         for (size_t i = 0; i < plan.size(); ++i)
-            if (Rounds{tiles_.size()}.of(i) >= round) changed |= halve(plan[i]);
+            if (Rounds{receivers_.size()}.of(i) >= round) changed |= halve(plan[i]);
     }
     return true;
 }

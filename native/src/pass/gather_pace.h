@@ -13,16 +13,15 @@ inline constexpr RayPlan kFirstRays = {64, 64};
 /// pace so far.
 class GatherPace {
 public:
-    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: of the whole scene.
-    GatherPace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
-               uint32_t receivers);
+    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: of the whole scene, by ray_weight().
+    GatherPace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles, double receivers);
 
     /// Plans the gather for seconds at the pilot's speed: sets goal.shortage, and lowers the first rays if even that
     /// is too much. True if it had to. Fixed counts, goal.target 0, become the best that time allows.
     bool begin(double seconds, double seconds_per_ray, RayPlan& first, NoiseGoal& goal);
     /// After some receivers took seconds_taken: the shortage for the others, who have seconds_left. True if there
     /// is any.
-    bool follow(uint32_t receivers, double seconds_taken, double seconds_left, const RayPlan& first, NoiseGoal& goal);
+    bool follow(double receivers, double seconds_taken, double seconds_left, const RayPlan& first, NoiseGoal& goal);
 
 private:
     /// Predicted rays per receiver.
@@ -33,15 +32,16 @@ private:
     RayPlan pilot_rays_;
     std::vector<Tile> tiles_;
     double pilot_receivers_ = 0.0;
-    uint32_t left_;
+    double left_;
     double predicted_ = 0.0, taken_ = 0.0; ///< rays and seconds of what is done
 };
 
 /// The same for a gather that plans whole tiles before it starts.
 class TilePace {
 public:
-    /// pilot: [tiles][kPilotParts], measured with pilot_rays. wanted: [tiles] without a limit.
-    TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles,
+    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: ray_weight() of each tile. wanted: [tiles]
+    /// without a limit.
+    TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<double> receivers,
              const NoiseGoal& goal, std::vector<RayPlan> wanted);
 
     /// Plans the tiles of the rounds from round on for so many rays, as plan_tiles() with the least shortage. True if
@@ -55,7 +55,7 @@ private:
 
     std::vector<MeasuredNoise> pilot_;
     RayPlan pilot_rays_;
-    std::vector<Tile> tiles_;
+    std::vector<double> receivers_;
     NoiseGoal goal_;
     std::vector<RayPlan> wanted_;
 };

@@ -49,10 +49,9 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
     std::vector<uint32_t> terms;
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const uint32_t r = tile.first + lane;
-        const auto [begin, end] = block_of(s_.scene, s_.receivers, tile, r);
         std::vector<std::pair<uint32_t, float>> mates; // lane and factor
         terms.clear();
-        for (uint32_t q = begin; q < end; ++q) {
+        for (const uint32_t q : block_of(s_.scene, s_.receivers, r)) {
             if (q != r && !may_share(s_.receivers, q, r)) continue;
             mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
             gathered.collect(q - tile.first, terms);
@@ -76,7 +75,12 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
 /// Ends a pass: its rows become the bounce in hand and part of the source of the final gather.
 void TermBaker::take(std::vector<TileRows>& tiles) {
     const Working here(bookkeeping_);
-    current_ = rows_.merge_tiles(tiles, table_);
+    for (size_t i = 0; i < tiles.size(); ++i) tiles[i].count.resize(s_.receivers.tiles[i].count);
+    const ReceiverRows gathered = rows_.merge_tiles(tiles, table_);
+    current_ = rows_.make_rows(s_.receivers.count(), [&](uint64_t r, std::vector<TermColor>& out) {
+        const uint32_t from = s_.receivers.coarse_from[r];
+        out.insert(out.end(), gathered.begin(from), gathered.end(from));
+    });
     if (first_ != nullptr) current_ = sets_as_one(current_);
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
@@ -138,7 +142,8 @@ void TermBaker::direct_source() {
     pool_.for_each(
         tiles.size(), progress_,
         [&](size_t i) {
-            const Tile& tile = s_.receivers.tiles[i];
+            const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
+            if (tile.count == 0) return;
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
             DirectGroups groups(s_.emitters, LightRoles::all, first_ != nullptr ? first_->sets_of(tile) : all_sets_);
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
@@ -164,11 +169,12 @@ void TermBaker::bounce(uint32_t index) {
     pool_.for_each(
         tiles.size(), progress_,
         [&](size_t i) {
-            const Tile& tile = s_.receivers.tiles[i];
+            const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
+            if (tile.count == 0) return;
             TermSums sums(table_);
             GatherOptions o = bounce_options(settings_, index);
             TileAims aims(s_.receivers, tile);
-            const uint64_t rays = aim_in_bounce(aims, index, i, o);
+            const uint64_t rays = aim_in_bounce(aims, index, i, tile, o);
             o.aims = aims.empty() ? nullptr : &aims;
             progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);

@@ -55,14 +55,14 @@ private:
     float indirect_light(const Tile& tile) const;
     uint32_t rays_per_door(uint32_t samples) const;
     uint64_t aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const;
-    /// The same in a bounce of tile i, where the second source repeats what the first chose.
-    uint64_t aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const GatherOptions& options);
-    Estimate estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const;
+    /// The same in a bounce of a part of tile i, where the second source repeats what the first chose.
+    uint64_t aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const Tile& part, const GatherOptions& options);
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
     void final_gather(std::vector<RayPlan>& plan);
     /// finish_tile: of a tile; returns how much light it stores.
     void gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile);
-    void store_tile(const Tile& tile, const RayPlan& plan, const Estimate& estimate, struct FinalTile& out);
+    void finish_parts(const Tile& tile, const RayPlan& plan, struct FinalTile* out);
+    void store_tile(const Tile& tile, const Estimate& estimate, struct FinalTile& out);
     void join(std::vector<struct FinalTile>& tiles);
     /// Another answer for the part of tile i that is checked.
     Estimate answer(size_t i, const RayPlan& plan, uint32_t seed) const;

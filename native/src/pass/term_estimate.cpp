@@ -140,12 +140,13 @@ uint32_t TermBaker::rays_per_door(uint32_t samples) const {
     return (share + 1) & ~1u;
 }
 
-uint64_t TermBaker::aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const GatherOptions& options) {
+uint64_t TermBaker::aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const Tile& part,
+                                  const GatherOptions& options) {
     if (first_ != nullptr) {
         for (const AimBox& box : first_->aimed_[index - 1][i]) aims.add(box, rays_per_door(options.samples));
         return 0;
     }
-    const uint64_t rays = aim_at_doors(aims, s_.receivers.tiles[i], options.samples, options.seed);
+    const uint64_t rays = aim_at_doors(aims, part, options.samples, options.seed);
     for (uint32_t aim = 0; aim < aims.count(); ++aim) aimed_[index - 1][i].push_back(aims.box(aim));
     return rays;
 }
@@ -173,10 +174,6 @@ DirectGroups TermBaker::look_around(const Tile& tile, uint32_t samples, uint32_t
                                     hash_combine(seed, s_.receivers.texel[tile.first])));
     guide().limit_samples(groups, tile);
     return groups;
-}
-
-TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, uint32_t seed) const {
-    return estimate(tile, plan, look_around(tile, plan.direct, seed), seed);
 }
 
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
@@ -252,8 +249,7 @@ NoiseTrial TermBaker::try_noise(const Tile& tile, const Tile& part, const Measur
 std::vector<RayPlan> TermBaker::plan_rays() {
     const size_t count = s_.receivers.tiles.size();
     std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
-    const bool timed = settings_.time_limit > 0.0f;
-    if (!(settings_.noise_target > 0.0f) && !timed) return plan;
+    if (!spares_rays(settings_)) return plan;
     std::vector<MeasuredNoise> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
@@ -265,7 +261,7 @@ std::vector<RayPlan> TermBaker::plan_rays() {
         const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
         DirectGroups groups = look_around(tile, small.direct, seed);
         for (uint32_t k = 0; k < kPilotParts; ++k) {
-            const Tile part = pilot_part(tile, k);
+            const Tile part = pilot_part(split(s_.receivers, tile).typical(), k);
             groups.start_at(part.first - tile.first);
             pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
             if (is_trial(i, k))
@@ -277,7 +273,8 @@ std::vector<RayPlan> TermBaker::plan_rays() {
     const NoiseGoal goal{settings_.noise_target, dark_level(pilot), most, gathers(),
                          fit_noise_model(trials, small, large)};
     if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
-    if (timed) pace_ = std::make_unique<TilePace>(std::move(pilot), small, s_.receivers.tiles, goal, plan);
+    if (settings_.time_limit > 0.0f)
+        pace_ = std::make_unique<TilePace>(std::move(pilot), small, ray_weights(s_.receivers), goal, plan);
     return plan;
 }
 

@@ -45,16 +45,16 @@ void FinalTile::thin_out(size_t begin) {
               [](const TermLight& a, const TermLight& b) { return a.term < b.term; });
 }
 
-void TermBaker::store_tile(const Tile& tile, const RayPlan& plan, const Estimate& t, FinalTile& out) {
+void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalTile& out) {
     const Working here(bookkeeping_);
     out.terms = t.terms;
     out.kept.assign(t.terms.size(), 0.0);
     out.dropped.assign(t.terms.size(), 0.0);
-    const float per_ray = 1.0f / static_cast<float>(std::max(plan.gather, 1u));
+    const float per_ray = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u));
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const size_t r = tile.first + lane;
         const size_t before = out.light.size();
-        result_.samples[r] = static_cast<float>(plan.gather);
+        result_.samples[r] = static_cast<float>(t.plan.gather);
         result_.inside[r] = t.gather.inside(lane) * per_ray;
         result_.total[r] = luminance(t.total(lane));
         result_.total_error[r] = static_cast<float>(std::sqrt(t.total_variance(lane)));
@@ -122,6 +122,7 @@ double TermBaker::time_left(double lights) const {
 void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile) {
     const std::vector<Tile>& tiles = s_.receivers.tiles;
     const Rounds rounds{tiles.size()};
+    const std::vector<double> weights = ray_weights(s_.receivers);
     double rays = 0.0, taken = 0.0, receivers = 0.0;
     std::atomic<size_t> stored{0};
     for (size_t round = 0; round < rounds.count(); ++round) {
@@ -134,12 +135,26 @@ void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function
             rounds.size(round), progress_, [&](size_t k) { stored += finish_tile(rounds.tile(round, k)); }, false);
         for (size_t k = 0; k < rounds.size(round); ++k) {
             const size_t i = rounds.tile(round, k);
-            rays += double(plan[i].gather + plan[i].direct) * tiles[i].count;
+            rays += double(plan[i].gather + plan[i].direct) * weights[i];
             receivers += tiles[i].count;
         }
         taken += progress_.elapsed() - start;
         progress_.update(static_cast<float>(round + 1) / static_cast<float>(rounds.count()));
     }
+}
+
+/// out: [2] of the tile's own receivers and of the ring.
+void TermBaker::finish_parts(const Tile& tile, const RayPlan& plan, FinalTile* out) {
+    const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
+    DirectGroups groups = look_around(tile, plan.direct, seed);
+    const TileParts parts = split(s_.receivers, tile);
+    if (parts.own.count > 0) store_tile(parts.own, estimate(parts.own, plan, groups, seed), out[0]);
+    if (parts.ring.count == 0) return;
+    const RayPlan ring = spares_rays(settings_) ? ring_rays(plan) : plan;
+    groups.allot(ring.direct, ring.direct);
+    limit_samples(groups, tile);
+    groups.start_at(parts.ring.first - tile.first);
+    store_tile(parts.ring, estimate(parts.ring, ring, groups, seed), out[1]);
 }
 
 void TermBaker::final_gather(std::vector<RayPlan>& plan) {
@@ -149,24 +164,24 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     for (auto* v : {&result_.standard_error, &result_.total, &result_.total_error}) v->assign(n, 0.0f);
     result_.samples.assign(n, 0.0f);
     result_.inside.assign(n, 0.0f);
-    std::vector<FinalTile> tiles(s_.receivers.tiles.size());
+    std::vector<FinalTile> parts(2 * s_.receivers.tiles.size()); // own and ring of each
     const auto finish_tile = [&](size_t i) {
-        const Tile& tile = s_.receivers.tiles[i];
-        store_tile(tile, plan[i], estimate(tile, plan[i], hash_combine(settings_.seed, kSaltFinal)), tiles[i]);
-        budget_.take(kLightCopies * tiles[i].light.size() * sizeof(TermLight));
-        return tiles[i].light.size();
+        finish_parts(s_.receivers.tiles[i], plan[i], &parts[2 * i]);
+        const size_t lights = parts[2 * i].light.size() + parts[2 * i + 1].light.size();
+        budget_.take(kLightCopies * lights * sizeof(TermLight));
+        return lights;
     };
     budget_.reset();
     if (settings_.trial != 0) return gather_some(s_.receivers, pool_, progress_, finish_tile, result_.trial);
     if (settings_.time_limit > 0.0f)
         gather_in_rounds(plan, finish_tile);
     else
-        pool_.for_each(tiles.size(), progress_, finish_tile);
-    join(tiles);
+        pool_.for_each(s_.receivers.tiles.size(), progress_, finish_tile);
+    join(parts);
 }
 
 TermBaker::Estimate TermBaker::answer(size_t i, const RayPlan& plan, uint32_t seed) const {
-    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(tile, i);
+    const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(s_.receivers, i);
     DirectGroups groups = look_around(tile, plan.direct, seed);
     groups.start_at(part.first - tile.first);
     return estimate(part, plan, groups, seed);
@@ -194,7 +209,8 @@ void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
         check.count(), progress_,
         [&](size_t k) {
             const size_t i = k * check.step();
-            const Tile part = TwinCheck::part(s_.receivers.tiles[i], i);
+            const Tile part = TwinCheck::part(s_.receivers, i);
+            if (part.count == 0) return;
             const uint32_t seed = hash_combine(settings_.seed, kSaltTwin);
             const Estimate second = answer(i, plan[i], seed);
             std::unique_ptr<const Estimate> third;

@@ -58,12 +58,13 @@ TwinCheck::TwinCheck(const LightmapReceivers& receivers, const BakeResult& resul
       dark_(dark_level(levels(result))),
       parts_(receivers.tiles.size() / step_) {}
 
-Tile TwinCheck::part(const Tile& tile, size_t i) {
-    return pilot_part(tile, hash32(static_cast<uint32_t>(i)) % kPilotParts);
+Tile TwinCheck::part(const LightmapReceivers& receivers, size_t i) {
+    const Tile& tile = receivers.tiles[i];
+    return pilot_part({tile.first, split(receivers, tile).on_charts}, hash32(static_cast<uint32_t>(i)) % kPilotParts);
 }
 
 void TwinCheck::compare(size_t k, uint32_t receiver, const Answers& a) {
-    if (receivers_.ring[receiver] || result_.inside[receiver] > kInsideShare) return;
+    if (result_.inside[receiver] > kInsideShare) return;
     const double scale = 0.5 * (double{a.first} + a.second) + dark_;
     if (!(scale > 0.0)) return;
     const auto half_square = [&](double d) { return std::min(0.5 * d * d / (scale * scale), 1.0); };

@@ -20,8 +20,8 @@ public:
     /// Part of a bake's rays that make another source, of the light that its final gather reflects.
     static constexpr uint32_t kSourcePart = 4;
 
-    /// The receivers of tile i that are estimated twice: of one tile the first, of another the last.
-    static Tile part(const Tile& tile, size_t i);
+    /// The receivers of tile i that are estimated twice, all on charts: of one tile the first, of another the last.
+    static Tile part(const LightmapReceivers& receivers, size_t i);
 
     /// Answers for a receiver, as luminance, W/m^2.
     struct Answers {

@@ -23,18 +23,72 @@ uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
     return (v | (v << 1)) & 0x55;
 }
 
-/// Order key of a texel: page tile, then Morton inside.
-struct TexelKey {
-    uint32_t tile;
-    uint32_t morton;
+/// Texels on charts, those of the ring whose 2x2 block has some on charts, and the others beside one on a chart.
+enum class TexelKind : uint8_t { on_chart, near_chart, apart };
+
+/// Texels from low to high of a page, those of them that it has.
+struct TexelRange {
+    uint32_t x0, y0, x1, y1;
+
+    TexelRange(const Page& page, int x, int y, int edge)
+        : x0(static_cast<uint32_t>(std::max(x, 0))),
+          y0(static_cast<uint32_t>(std::max(y, 0))),
+          x1(std::min(static_cast<uint32_t>(x + edge), page.width)),
+          y1(std::min(static_cast<uint32_t>(y + edge), page.height)) {}
+
+    template <class Visit>
+    void each(const Page& page, const Visit& visit) const {
+        for (uint32_t y = y0; y < y1; ++y)
+            for (uint32_t x = x0; x < x1; ++x) visit(page.first_texel + y * page.width + x);
+    }
 };
 
-TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, uint32_t first_tile) {
+/// Where a texel lies on its page.
+std::pair<int, int> place_of(const Page& page, uint64_t texel) {
+    const auto local = static_cast<uint32_t>(texel - page.first_texel);
+    return {local % page.width, local / page.width};
+}
+
+class TexelKinds {
+public:
+    TexelKinds(const Snapshot& scene, const Coverage& coverage) : scene_(scene), on_chart_(scene.texel_count(), false) {
+        for (const Fragment& f : coverage.fragments)
+            if (!f.ring) on_chart_[f.texel] = true;
+    }
+    TexelKind of(const Fragment& f) const {
+        if (on_chart_[f.texel]) return TexelKind::on_chart;
+        const Page& page = scene_.pages[scene_.instance_of(f.triangle).page];
+        const auto [x, y] = place_of(page, f.texel);
+        const bool block = any(page, {page, x & ~1, y & ~1, 2}), around = any(page, {page, x - 1, y - 1, 3});
+        return !block && around ? TexelKind::apart : TexelKind::near_chart;
+    }
+
+private:
+    bool any(const Page& page, const TexelRange& range) const {
+        bool found = false;
+        range.each(page, [&](uint64_t t) { found |= on_chart_[t]; });
+        return found;
+    }
+
+    const Snapshot& scene_;
+    std::vector<bool> on_chart_; ///< [page texels]
+};
+
+/// Order key of a texel: page tile, then its kind, then Morton inside.
+struct TexelKey {
+    uint32_t tile;
+    TexelKind kind;
+    uint32_t morton;
+
+    auto operator<=>(const TexelKey&) const = default;
+};
+
+TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, TexelKind kind, uint32_t first_tile) {
     const Page& page = scene.pages[page_index];
     const auto local = static_cast<uint32_t>(texel - page.first_texel);
     const uint32_t x = local % page.width, y = local / page.width;
     const uint32_t tiles_x = (page.width + kTileEdge - 1) / kTileEdge;
-    return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge,
+    return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge, kind,
             part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
 }
 
@@ -67,6 +121,7 @@ struct Builder {
     const Coverage& coverage;
     SwitchSolids solids;
     std::vector<std::pair<uint32_t, uint32_t>> runs; ///< fragments [begin, end) of each receiver
+    std::vector<TexelKind> kind;                     ///< [receivers]
     std::vector<Spots> moved;                        ///< [receivers] those with a moved position; empty without solids
     LightmapReceivers out;
     std::atomic<uint64_t> pushed{0}, clamped{0};
@@ -87,6 +142,7 @@ struct Builder {
     void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
     void join_moved();
     void find_sharing(const Tile& tile);
+    uint32_t stand_in(uint32_t receiver) const;
     Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
     void set_albedo(uint32_t receiver);
@@ -105,20 +161,20 @@ void Builder::order() {
                         ((before.width + kTileEdge - 1) / kTileEdge) * ((before.height + kTileEdge - 1) / kTileEdge);
     }
     const auto& f = coverage.fragments;
+    const TexelKinds kinds(scene, coverage);
     for (uint32_t begin = 0, end; begin < f.size(); begin = end) {
         for (end = begin + 1; end < f.size() && f[end].texel == f[begin].texel;) ++end;
         const uint32_t page = scene.instance_of(f[begin].triangle).page;
-        entries.push_back({key_of(scene, page, f[begin].texel, first_tile[page]), begin, end});
+        entries.push_back({key_of(scene, page, f[begin].texel, kinds.of(f[begin]), first_tile[page]), begin, end});
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-        return a.key.tile != b.key.tile ? a.key.tile < b.key.tile : a.key.morton < b.key.morton;
-    });
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
     for (size_t i = 0; i < entries.size(); ++i) {
         if (i == 0 || entries[i].key.tile != entries[i - 1].key.tile)
             out.tiles.push_back({static_cast<uint32_t>(i), 0});
         ++out.tiles.back().count;
         runs.emplace_back(entries[i].begin, entries[i].end);
         out.texel.push_back(f[entries[i].begin].texel);
+        kind.push_back(entries[i].key.kind);
     }
 }
 
@@ -277,17 +333,35 @@ void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
     for (size_t k = 0; k < n; ++k) spots[k] = best[k * best.size() / n];
 }
 
-/// A wall between two texels of a block ends all sharing in it.
+/// A wall between two texels of a block ends all sharing in it. What is far from all blocks of charts takes the
+/// coarse light of a neighbour.
 void Builder::find_sharing(const Tile& tile) {
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
-        const auto [begin, end] = block_of(scene, out, tile, r);
         const Vec3 p = out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
         out.shares[r] = 1;
-        for (uint32_t q = begin; q < end; ++q) {
+        out.coarse_from[r] = kind[r] == TexelKind::apart ? stand_in(r) : r;
+        for (const uint32_t q : block_of(scene, out, r)) {
             const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
             if (q != r && tracer.occluded({p, to, 0.0f, 1.0f}, kMaskWall)) out.shares[r] = 0;
         }
     }
+}
+
+/// The receiver on a chart next to one of the ring that faces most the same way, the nearest of several.
+uint32_t Builder::stand_in(uint32_t r) const {
+    const Page& page = scene.pages[scene.instance_of(out.triangle[r]).page];
+    const auto [x, y] = place_of(page, out.texel[r]);
+    uint32_t best = r;
+    std::pair<float, float> best_rank{};
+    TexelRange(page, x - 1, y - 1, 3).each(page, [&](uint64_t t) {
+        const uint32_t q = out.of_texel[t];
+        if (q == kNoReceiver || kind[q] != TexelKind::on_chart) return;
+        const Vec3 to = out.shown_origin(q) - out.shown_origin(r);
+        const std::pair rank{std::round(8.0f * glm::dot(out.frame[q].z, out.frame[r].z)), -glm::dot(to, to)};
+        if (best != r && rank <= best_rank) return;
+        best = q, best_rank = rank;
+    });
+    return best;
 }
 
 void Builder::set_frame(uint32_t r) {
@@ -398,19 +472,24 @@ void warn_about_albedo(const Snapshot& scene, const LightmapReceivers& receivers
 
 } // namespace
 
-// Morton order keeps a block's receivers together.
-std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile,
-                                       uint32_t r) {
-    const auto block = [&](uint32_t q) {
-        const Page& page = scene.pages[scene.instance_of(receivers.triangle[q]).page];
-        const auto local = static_cast<uint32_t>(receivers.texel[q] - page.first_texel);
-        return std::pair{(local % page.width) / 2, local / page.width / 2};
-    };
-    const auto own = block(r);
-    uint32_t begin = r, end = r + 1;
-    while (begin > tile.first && block(begin - 1) == own) --begin;
-    while (end < tile.first + tile.count && block(end) == own) ++end;
-    return {begin, end};
+Block block_of(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
+    const Page& page = scene.pages[scene.instance_of(receivers.triangle[r]).page];
+    const auto [x, y] = place_of(page, receivers.texel[r]);
+    Block block;
+    TexelRange(page, x & ~1, y & ~1, 2).each(page, [&](uint64_t t) {
+        const uint32_t q = receivers.of_texel[t];
+        if (q != kNoReceiver) block.members[block.count++] = q;
+    });
+    return block;
+}
+
+TileParts split(const LightmapReceivers& receivers, const Tile& tile) {
+    const auto begin = receivers.ring.begin() + tile.first, end = begin + tile.count;
+    const auto on_charts = static_cast<uint32_t>(std::find(begin, end, uint8_t{1}) - begin);
+    const uint32_t own = std::min((on_charts + kLanes - 1) / kLanes * kLanes, tile.count);
+    uint32_t coarse = on_charts;
+    while (coarse < tile.count && receivers.coarse_from[tile.first + coarse] == tile.first + coarse) ++coarse;
+    return {{tile.first, own}, {tile.first + own, tile.count - own}, {tile.first, coarse}, on_charts};
 }
 
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
@@ -437,6 +516,7 @@ LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, co
     });
     b.join_moved();
     b.out.shares.resize(count);
+    b.out.coarse_from.resize(count);
     pool.for_each(b.out.tiles.size(), progress, [&](size_t i) { b.find_sharing(b.out.tiles[i]); });
     b.out.pushed_positions = b.pushed;
     b.out.clamped_albedo = b.clamped;

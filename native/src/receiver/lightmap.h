@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "accel/embree_scene.h"
@@ -10,7 +11,8 @@
 
 namespace ajar {
 
-/// Receivers of a 16x16 block of one page, in Morton order.
+/// Receivers of a 16x16 block of one page: those on charts, then those of the ring around them, of which those come
+/// last that take coarse light of others; each kind in Morton order.
 struct Tile {
     uint32_t first = 0, count = 0; ///< count <= kTileReceivers
 };
@@ -34,8 +36,11 @@ struct LightmapReceivers {
     std::vector<uint8_t> cut;       ///< a wall runs through the texel; its positions lie on one side of it
     std::vector<uint8_t>
         shares; ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
-    std::vector<uint32_t> of_texel;   ///< [page texels] receiver, or kNoReceiver
-    std::vector<uint8_t> ring;        ///< outside its chart; only bilinear lookups touch it
+    std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
+    std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
+    /// [count] receiver that gathers the light to be reflected: itself, or for those of the ring in whose 2x2 block
+    /// there are no others one on a chart next to it. No ray meets such texels.
+    std::vector<uint32_t> coarse_from;
     std::vector<uint32_t> moved_row;  ///< [count] row of moved or kNoReceiver; empty: nothing is moved
     std::vector<MovedPosition> moved; ///< [rows][positions_per_texel]
     uint64_t clamped_albedo = 0;      ///< receivers whose reflectance reached kMaxReflectance
@@ -56,9 +61,28 @@ struct LightmapReceivers {
     const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
 };
 
-/// First and last + 1 receiver of the 2x2 block that r belongs to, inside its tile.
-std::pair<uint32_t, uint32_t> block_of(const Snapshot& scene, const LightmapReceivers& receivers, const Tile& tile,
-                                       uint32_t r);
+/// The receivers of a 2x2 block of texels.
+struct Block {
+    std::array<uint32_t, 4> members;
+    uint32_t count = 0;
+
+    const uint32_t* begin() const { return members.data(); }
+    const uint32_t* end() const { return members.data() + count; }
+};
+
+/// Those of the block that r belongs to; all lie in its tile.
+Block block_of(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r);
+
+/// A tile as two, own and ring: whole packets (kLanes) that have receivers on charts, and the rest, all ring.
+struct TileParts {
+    Tile own, ring;
+    Tile coarse;        ///< receivers that gather light to be reflected, the first of the tile
+    uint32_t on_charts; ///< receivers of own before the first of the ring
+
+    /// Those whose light and noise speak for the tile.
+    Tile typical() const { return {own.first, on_charts > 0 ? on_charts : ring.count}; }
+};
+TileParts split(const LightmapReceivers& receivers, const Tile& tile);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
 /// (algorithms.md 9.1, 9.2, 9.4), of switchable ones while these are there. They do not depend on the seed of the bake:
