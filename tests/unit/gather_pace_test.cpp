@@ -87,12 +87,12 @@ std::vector<MeasuredNoise> mixed_pilot(size_t tiles) {
 struct Spent {
     double rays = 0.0, variance = 0.0;
 };
-Spent spent(const std::vector<MeasuredNoise>& pilot, const std::vector<RayPlan>& plan) {
+Spent spent(const std::vector<MeasuredNoise>& pilot, const std::vector<TilePlan>& plan) {
     Spent sum;
     for (size_t i = 0; i < plan.size(); ++i) {
         const MeasuredNoise& n = pilot[i * kPilotParts];
-        sum.rays += 64.0 * (plan[i].gather + plan[i].direct);
-        sum.variance += 32.0 * (n.gather_variance / plan[i].gather + n.direct_variance / plan[i].direct);
+        sum.rays += 64.0 * mean_rays(plan[i]);
+        sum.variance += 32.0 * (n.gather_variance / plan[i][0].gather + n.direct_variance / plan[i][0].direct);
     }
     return sum;
 }
@@ -102,7 +102,7 @@ TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
     const std::vector<MeasuredNoise> noise = mixed_pilot(kTileCount);
     const std::vector<double> receivers(kTileCount, 64.0);
     NoiseGoal goal{0.01f, 0.0f, {1u << 20, 1u << 20}, true, {}}, even = goal;
-    std::vector<RayPlan> wanted = plan_tiles(noise, kPilot, goal), plan = wanted;
+    std::vector<TilePlan> wanted = plan_tiles(noise, kPilot, goal), plan = wanted;
     const TilePace pace(noise, kPilot, receivers, goal, wanted);
     EXPECT_TRUE(pace.fit(0, spent(noise, wanted).rays / 20.0, plan));
     const Spent own = spent(noise, plan);
@@ -115,20 +115,22 @@ TEST(GatherPace, ShortTimeIsSpentWhereItLowersTheMeanError) {
 TEST(GatherPace, TilesThatAreDoneKeepTheirRays) {
     const std::vector<double> receivers(32, 64.0);
     const std::vector<MeasuredNoise> noise = mixed_pilot(32);
-    std::vector<RayPlan> wanted(32, {1024, 1024}), plan = wanted;
+    TilePlan most;
+    most.fill({1024, 1024});
+    std::vector<TilePlan> wanted(32, most), plan = wanted;
     const TilePace pace(noise, kPilot, receivers, kGoal, wanted);
     EXPECT_FALSE(pace.fit(0, 1e9, plan));
     EXPECT_TRUE(pace.fit(8, 1e4, plan));
     const Rounds rounds{32};
     for (size_t i = 0; i < 32; ++i) {
         if (rounds.of(i) < 8) {
-            EXPECT_EQ(plan[i].gather, 1024u);
+            EXPECT_EQ(plan[i][2].gather, 1024u);
         } else {
-            EXPECT_LE(plan[i].gather, 64u);
+            EXPECT_LE(plan[i][2].gather, 64u);
         }
     }
     EXPECT_FALSE(pace.fit(8, 1e9, plan)); // time came back
-    EXPECT_EQ(plan[31].gather, 1024u);
+    EXPECT_EQ(plan[31][2].gather, 1024u);
 }
 
 } // namespace

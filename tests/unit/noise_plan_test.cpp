@@ -58,16 +58,39 @@ TEST(NoisePlan, NothingIsAddedToWhatTheCapAllows) {
     EXPECT_EQ(missing_rays(noise(1.0f), kFirst, goal).gather, 0u);
 }
 
-TEST(NoisePlan, TilesGetWhatTheirPartsNeed) {
+TEST(NoisePlan, PartsOfTilesGetWhatTheyNeed) {
     NoiseGoal goal = kGoal;
-    std::vector<MeasuredNoise> pilot(2 * kPilotParts, noise(0.01f));
+    std::vector<MeasuredNoise> pilot(3 * kPilotParts, noise(0.01f));
     for (uint32_t k = 0; k < kPilotParts; ++k) pilot[kPilotParts + k] = noise(0.2f);
-    const std::vector<RayPlan> plan = plan_tiles(pilot, {32, 32}, goal);
-    EXPECT_EQ(plan[0].gather, 64u);
-    EXPECT_EQ(plan[0].direct, 16u);
-    EXPECT_EQ(plan[1].gather, 512u); // a variance of 16 times the budget with 32 rays
+    pilot[2 * kPilotParts] = noise(0.8f);
+    const std::vector<TilePlan> plan = plan_tiles(pilot, {32, 32}, goal);
+    EXPECT_EQ(plan[0][0].gather, 64u);
+    EXPECT_EQ(plan[0][0].direct, 16u);
+    EXPECT_EQ(plan[1][3].gather, 512u); // a variance of 16 times the budget with 32 rays
+    EXPECT_EQ(plan[2][0].gather, 1024u);
+    EXPECT_EQ(plan[2][1].gather, 1024u); // half of its variance is the tile's
+    EXPECT_EQ(mean_rays(plan[1]), 1024.0);
+    EXPECT_EQ(ring_rays(plan[1]).gather, 128u);
     goal.model.gather_calibration = goal.model.direct_calibration = 0.25f;
-    EXPECT_EQ(plan_tiles(pilot, {32, 32}, goal)[1].gather, 128u);
+    EXPECT_EQ(plan_tiles(pilot, {32, 32}, goal)[1][0].gather, 128u);
+}
+
+TEST(NoisePlan, PartsOfATileAreWholePacketsAndMissNone) {
+    for (const uint32_t count : {0u, 1u, 8u, 9u, 17u, 100u, 256u}) {
+        EXPECT_EQ(part_begin(count, 0), 0u);
+        EXPECT_EQ(part_begin(count, kPilotParts), count);
+        for (uint32_t k = 0; k < kPilotParts; ++k) {
+            EXPECT_LE(part_begin(count, k), part_begin(count, k + 1));
+            EXPECT_TRUE(part_begin(count, k) == count || part_begin(count, k) % 8 == 0);
+            const Tile pilot = pilot_part({40, count}, k);
+            EXPECT_LE(pilot.first + pilot.count, 40 + count);
+            EXPECT_GE(pilot.count, std::min(count, 1u));
+        }
+        for (uint32_t local = 0; local < count; ++local) {
+            EXPECT_LE(part_begin(count, part_of(count, local)), local);
+            EXPECT_GT(part_begin(count, part_of(count, local) + 1), local);
+        }
+    }
 }
 
 TEST(NoisePlan, TheModelLearnsHowNoiseFalls) {

@@ -70,8 +70,19 @@ std::vector<double> ray_weights(const LightmapReceivers& receivers) {
     return weights;
 }
 
+uint32_t part_begin(uint32_t count, uint32_t k) {
+    const uint32_t packets = (count + kLanes - 1) / kLanes;
+    return std::min(packets * k / kPilotParts * kLanes, count);
+}
+
+uint32_t part_of(uint32_t count, uint32_t local) {
+    uint32_t k = kPilotParts - 1;
+    while (part_begin(count, k) > local) --k;
+    return k;
+}
+
 Tile pilot_part(const Tile& tile, uint32_t part) {
-    const uint32_t packets = (tile.count + kLanes - 1) / kLanes, first = packets * part / kPilotParts * kLanes;
+    const uint32_t first = part_begin(tile.count, part);
     return {tile.first + first, std::min(kPilotReceivers, tile.count - first)};
 }
 

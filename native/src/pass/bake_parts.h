@@ -58,6 +58,10 @@ inline uint32_t bounce_rays(const ajar_settings& settings) { return std::max(set
 float dark_level(std::vector<float> levels);
 float dark_level(const std::vector<MeasuredNoise>& pilot);
 
+/// First receiver of part k of a tile that has count; count for kPilotParts. Parts are whole packets.
+uint32_t part_begin(uint32_t count, uint32_t k);
+/// The part that a receiver lies in.
+uint32_t part_of(uint32_t count, uint32_t local);
 /// Receivers that stand for a part of a tile in the pilot pass.
 Tile pilot_part(const Tile& tile, uint32_t part);
 

@@ -72,7 +72,7 @@ bool GatherPace::follow(double receivers, double seconds_taken, double seconds_l
 }
 
 TilePace::TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<double> receivers,
-                   const NoiseGoal& goal, std::vector<RayPlan> wanted)
+                   const NoiseGoal& goal, std::vector<TilePlan> wanted)
     : pilot_(std::move(pilot)),
       pilot_rays_(pilot_rays),
       receivers_(std::move(receivers)),
@@ -81,26 +81,29 @@ TilePace::TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, 
     goal_.target = std::max(goal_.target, kLeastTarget);
 }
 
-double TilePace::rays(const std::vector<RayPlan>& plan, size_t round) const {
+double TilePace::rays(const std::vector<TilePlan>& plan, size_t round) const {
     const Rounds rounds{receivers_.size()};
     double sum = 0.0;
     for (size_t i = 0; i < receivers_.size(); ++i)
-        if (rounds.of(i) >= round) sum += double(plan[i].gather + plan[i].direct) * receivers_[i];
+        if (rounds.of(i) >= round) sum += mean_rays(plan[i]) * receivers_[i];
     return sum;
 }
 
-void TilePace::plan_with(float shortage, size_t round, std::vector<RayPlan>& plan) const {
+void TilePace::plan_with(float shortage, size_t round, std::vector<TilePlan>& plan) const {
     NoiseGoal goal = goal_;
     goal.shortage = shortage;
     const Rounds rounds{receivers_.size()};
     for (size_t i = 0; i < receivers_.size(); ++i) {
         if (rounds.of(i) < round) continue;
-        const RayPlan p = shortage > 0.0f ? plan_tile(&pilot_[i * kPilotParts], pilot_rays_, goal) : wanted_[i];
-        plan[i] = {std::min(wanted_[i].gather, p.gather), std::min(wanted_[i].direct, p.direct)};
+        plan[i] = wanted_[i];
+        if (!(shortage > 0.0f)) continue;
+        const TilePlan fewer = plan_tile(&pilot_[i * kPilotParts], pilot_rays_, goal);
+        for (uint32_t k = 0; k < kPilotParts; ++k)
+            plan[i][k] = {std::min(plan[i][k].gather, fewer[k].gather), std::min(plan[i][k].direct, fewer[k].direct)};
     }
 }
 
-bool TilePace::fit(size_t round, double affordable, std::vector<RayPlan>& plan) const {
+bool TilePace::fit(size_t round, double affordable, std::vector<TilePlan>& plan) const {
     const auto suffices = [&](float shortage) {
         plan_with(shortage, round, plan);
         return rays(plan, round) <= affordable;
@@ -110,7 +113,8 @@ bool TilePace::fit(size_t round, double affordable, std::vector<RayPlan>& plan) 
     for (bool changed = true; changed && rays(plan, round) > affordable;) {
         changed = false;
         for (size_t i = 0; i < plan.size(); ++i)
-            if (Rounds{receivers_.size()}.of(i) >= round) changed |= halve(plan[i]);
+            if (Rounds{receivers_.size()}.of(i) >= round)
+                for (RayPlan& p : plan[i]) changed |= halve(p);
     }
     return true;
 }

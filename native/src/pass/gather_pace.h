@@ -42,22 +42,22 @@ public:
     /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: ray_weight() of each tile. wanted: [tiles]
     /// without a limit.
     TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<double> receivers,
-             const NoiseGoal& goal, std::vector<RayPlan> wanted);
+             const NoiseGoal& goal, std::vector<TilePlan> wanted);
 
     /// Plans the tiles of the rounds from round on for so many rays, as plan_tiles() with the least shortage. True if
     /// more are wanted.
-    bool fit(size_t round, double rays, std::vector<RayPlan>& plan) const;
+    bool fit(size_t round, double rays, std::vector<TilePlan>& plan) const;
 
 private:
-    void plan_with(float shortage, size_t round, std::vector<RayPlan>& plan) const;
+    void plan_with(float shortage, size_t round, std::vector<TilePlan>& plan) const;
     /// Rays of the rounds from round on.
-    double rays(const std::vector<RayPlan>& plan, size_t round) const;
+    double rays(const std::vector<TilePlan>& plan, size_t round) const;
 
     std::vector<MeasuredNoise> pilot_;
     RayPlan pilot_rays_;
     std::vector<double> receivers_;
     NoiseGoal goal_;
-    std::vector<RayPlan> wanted_;
+    std::vector<TilePlan> wanted_;
 };
 
 } // namespace ajar

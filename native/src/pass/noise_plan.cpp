@@ -66,6 +66,13 @@ double variance_with(const MeasuredNoise& n, const RayPlan& measured, const RayP
            scaled(n.direct_variance, measured.direct, rays.direct, model.direct_power);
 }
 
+/// Rays that parts need for one variance, as those with the same mean variance and the least sum.
+void even_out(std::array<double, kPilotParts>& rays) {
+    double roots = 0.0;
+    for (const double n : rays) roots += std::sqrt(n) / kPilotParts;
+    for (double& n : rays) n = std::sqrt(n) * roots;
+}
+
 /// The middle of some numbers; 0 of too few.
 float typical(std::vector<float> values) {
     if (values.size() < kLeastTrials) return 0.0f;
@@ -135,29 +142,45 @@ RayPlan missing_rays(const MeasuredNoise& measured, const RayPlan& done, const N
     return more;
 }
 
-RayPlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal) {
+TilePlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal) {
     // Eight receivers are few: all parts of the tile pool with each.
     const auto pooled = [&](size_t k, float MeasuredNoise::*v) {
         float sum = 0.0f;
         for (size_t j = 0; j < kPilotParts; ++j) sum += parts[j].*v;
         return std::max(0.5f * (parts[k].*v + sum / kPilotParts), parts[k].*v);
     };
-    double gather = 0.0, direct = 0.0;
+    TilePlan plan;
+    std::array<double, kPilotParts> gather, direct;
     for (size_t k = 0; k < kPilotParts; ++k) {
         const MeasuredNoise noise = calibrated(
             {parts[k].level, pooled(k, &MeasuredNoise::gather_variance), pooled(k, &MeasuredNoise::direct_variance)},
             goal.model);
         const double allowed = allowed_variance(noise, pilot_rays, goal) + 1e-30;
         const Wanted wanted = rays_for(noise, pilot_rays, allowed, goal.model);
-        gather += wanted.gather / kPilotParts, direct += wanted.direct / kPilotParts;
+        gather[k] = wanted.gather, direct[k] = wanted.direct;
     }
-    return {goal.gathers ? power_of_two(gather, 64, std::max(goal.most.gather, 64u)) : 0,
-            power_of_two(direct, std::min(16u, goal.most.direct), std::max(goal.most.direct, 1u))};
+    even_out(gather), even_out(direct);
+    for (size_t k = 0; k < kPilotParts; ++k)
+        plan[k] = {goal.gathers ? power_of_two(gather[k], 64, std::max(goal.most.gather, 64u)) : 0,
+                   power_of_two(direct[k], std::min(16u, goal.most.direct), std::max(goal.most.direct, 1u))};
+    return plan;
 }
 
-std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
-                                const NoiseGoal& goal) {
-    std::vector<RayPlan> plan;
+RayPlan ring_rays(const TilePlan& plan) {
+    RayPlan sum;
+    for (const RayPlan& p : plan) sum.gather += p.gather / kPilotParts, sum.direct += p.direct / kPilotParts;
+    return ring_rays(sum);
+}
+
+double mean_rays(const TilePlan& plan) {
+    double sum = 0.0;
+    for (const RayPlan& p : plan) sum += double(p.gather) + p.direct;
+    return sum / kPilotParts;
+}
+
+std::vector<TilePlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
+                                 const NoiseGoal& goal) {
+    std::vector<TilePlan> plan;
     for (size_t i = 0; i < pilot.size(); i += kPilotParts) plan.push_back(plan_tile(&pilot[i], pilot_rays, goal));
     return plan;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "pass/bake_parts.h"
@@ -51,12 +52,17 @@ bool is_trial(size_t tile, uint32_t part);
 /// averaged with the first one, weighed by share_of_more() (algorithms.md 10.3: one decision).
 RayPlan missing_rays(const MeasuredNoise& noise, const RayPlan& done, const NoiseGoal& goal);
 
-/// Ray counts that reach the goal by what the pilot found in a tile's parts ([kPilotParts]), where whole tiles get
-/// the same (algorithms.md 10.3, 10.4).
-RayPlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal);
+/// Ray counts of a tile's parts.
+using TilePlan = std::array<RayPlan, kPilotParts>;
+/// Those that reach the goal by what the pilot found in them ([kPilotParts]; algorithms.md 10.3, 10.4).
+TilePlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const NoiseGoal& goal);
 /// The same for all tiles, [tiles][kPilotParts].
-std::vector<RayPlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
-                                const NoiseGoal& goal);
+std::vector<TilePlan> plan_tiles(const std::vector<MeasuredNoise>& pilot, const RayPlan& pilot_rays,
+                                 const NoiseGoal& goal);
+/// What receivers of the ring around parts with these get.
+RayPlan ring_rays(const TilePlan& plan);
+/// Mean of the parts, rays of both kinds.
+double mean_rays(const TilePlan& plan);
 
 /// Weight of the answer of the further rays, by inverse variance.
 float share_of_more(const MeasuredNoise& noise, const RayPlan& done, const RayPlan& more, const NoiseGoal& goal);

@@ -254,7 +254,7 @@ void TermBaker::find_source() {
 BakeResult TermBaker::run() {
     find_source();
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
-    std::vector<RayPlan> plan = plan_rays();
+    std::vector<TilePlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
     final_gather(plan);
     if (settings_.trial != 0) return std::move(result_);

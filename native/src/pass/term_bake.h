@@ -38,7 +38,7 @@ private:
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
     ReceiverRows prune(const ReceiverRows& rows, float share, uint32_t seed) const;
-    std::vector<RayPlan> plan_rays();
+    std::vector<TilePlan> plan_rays();
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
     NoiseTrial try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
                          DirectGroups groups) const;
@@ -58,17 +58,17 @@ private:
     /// The same in a bounce of a part of tile i, where the second source repeats what the first chose.
     uint64_t aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const Tile& part, const GatherOptions& options);
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
-    void final_gather(std::vector<RayPlan>& plan);
+    void final_gather(std::vector<TilePlan>& plan);
     /// finish_tile: of a tile; returns how much light it stores.
-    void gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile);
-    void finish_parts(const Tile& tile, const RayPlan& plan, struct FinalTile* out);
-    void store_tile(const Tile& tile, const Estimate& estimate, struct FinalTile& out);
-    void join(std::vector<struct FinalTile>& tiles);
+    void gather_in_rounds(std::vector<TilePlan>& plan, const std::function<size_t(size_t)>& finish_tile);
+    std::vector<struct FinalPart> finish_parts(const Tile& tile, const TilePlan& plan);
+    void store_tile(const Tile& tile, const Estimate& estimate, struct FinalPart& out);
+    void join(std::vector<struct FinalPart>& tiles);
     /// Another answer for the part of tile i that is checked.
-    Estimate answer(size_t i, const RayPlan& plan, uint32_t seed) const;
+    Estimate answer(size_t i, const TilePlan& plan, uint32_t seed) const;
     /// As in the plain bake; null also if memory does not reach.
     std::unique_ptr<TermBaker> other_source();
-    void calibrate_error(const std::vector<RayPlan>& plan);
+    void calibrate_error(const std::vector<TilePlan>& plan);
     bool gathers() const;
     /// Seconds that the time limit leaves for the passes if that much light gets stored beside the base.
     double time_left(double lights) const;

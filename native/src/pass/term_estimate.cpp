@@ -246,9 +246,11 @@ NoiseTrial TermBaker::try_noise(const Tile& tile, const Tile& part, const Measur
     return trial;
 }
 
-std::vector<RayPlan> TermBaker::plan_rays() {
+std::vector<TilePlan> TermBaker::plan_rays() {
     const size_t count = s_.receivers.tiles.size();
-    std::vector<RayPlan> plan(count, {gathers() ? settings_.samples : 0, settings_.direct_samples});
+    TilePlan same;
+    same.fill({gathers() ? settings_.samples : 0, settings_.direct_samples});
+    std::vector<TilePlan> plan(count, same);
     if (!spares_rays(settings_)) return plan;
     std::vector<MeasuredNoise> pilot(count * kPilotParts);
     const uint64_t rays_before = progress_.rays();

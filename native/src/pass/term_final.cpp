@@ -10,8 +10,8 @@ namespace ajar {
 
 constexpr uint64_t kLightCopies = 3; ///< of what is stored: per tile, joined, in pages
 
-/// Rows of one tile of the final gather.
-struct FinalTile {
+/// Rows of a part of a tile from the final gather.
+struct FinalPart {
     std::vector<Term> terms;
     std::vector<uint32_t> count;
     std::vector<TermLight> light;      ///< term = index into terms
@@ -23,7 +23,7 @@ struct FinalTile {
     void thin_out(size_t begin);
 };
 
-void FinalTile::thin_out(size_t begin) {
+void FinalPart::thin_out(size_t begin) {
     const auto strength = [](const TermLight& l) { return std::abs(luminance(l.irradiance)); };
     const std::span<TermLight> own(light.begin() + static_cast<ptrdiff_t>(begin), light.end());
     for (const TermLight& l : own) crowded_out.of += strength(l);
@@ -45,7 +45,7 @@ void FinalTile::thin_out(size_t begin) {
               [](const TermLight& a, const TermLight& b) { return a.term < b.term; });
 }
 
-void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalTile& out) {
+void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) {
     const Working here(bookkeeping_);
     out.terms = t.terms;
     out.kept.assign(t.terms.size(), 0.0);
@@ -80,16 +80,16 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalTile& out) 
     }
 }
 
-void TermBaker::join(std::vector<FinalTile>& tiles) {
+void TermBaker::join(std::vector<FinalPart>& tiles) {
     const Working here(bookkeeping_);
     TermResult& out = result_.terms;
-    for (const FinalTile& t : tiles) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
+    for (const FinalPart& t : tiles) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
     std::sort(out.terms.begin(), out.terms.end());
     out.terms.erase(std::unique(out.terms.begin(), out.terms.end()), out.terms.end());
     std::erase_if(out.terms, [](const Term& t) { return t.is_base(); });
     std::vector<double> kept(out.terms.size(), 0.0), dropped(out.terms.size(), 0.0);
     out.first.push_back(0);
-    for (FinalTile& t : tiles) {
+    for (FinalPart& t : tiles) {
         std::vector<uint32_t> number;
         for (size_t i = 0; i < t.terms.size(); ++i) {
             number.push_back(static_cast<uint32_t>(std::lower_bound(out.terms.begin(), out.terms.end(), t.terms[i]) -
@@ -119,7 +119,7 @@ double TermBaker::time_left(double lights) const {
 }
 
 /// Against the clock: before each round the plan of the rest is cut to what time allows at the pace so far.
-void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function<size_t(size_t)>& finish_tile) {
+void TermBaker::gather_in_rounds(std::vector<TilePlan>& plan, const std::function<size_t(size_t)>& finish_tile) {
     const std::vector<Tile>& tiles = s_.receivers.tiles;
     const Rounds rounds{tiles.size()};
     const std::vector<double> weights = ray_weights(s_.receivers);
@@ -135,7 +135,7 @@ void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function
             rounds.size(round), progress_, [&](size_t k) { stored += finish_tile(rounds.tile(round, k)); }, false);
         for (size_t k = 0; k < rounds.size(round); ++k) {
             const size_t i = rounds.tile(round, k);
-            rays += double(plan[i].gather + plan[i].direct) * weights[i];
+            rays += mean_rays(plan[i]) * weights[i];
             receivers += tiles[i].count;
         }
         taken += progress_.elapsed() - start;
@@ -143,31 +143,40 @@ void TermBaker::gather_in_rounds(std::vector<RayPlan>& plan, const std::function
     }
 }
 
-/// out: [2] of the tile's own receivers and of the ring.
-void TermBaker::finish_parts(const Tile& tile, const RayPlan& plan, FinalTile* out) {
+/// Every part of a tile with its own rays, then the ring.
+std::vector<FinalPart> TermBaker::finish_parts(const Tile& tile, const TilePlan& plan) {
     const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
-    DirectGroups groups = look_around(tile, plan.direct, seed);
     const TileParts parts = split(s_.receivers, tile);
-    if (parts.own.count > 0) store_tile(parts.own, estimate(parts.own, plan, groups, seed), out[0]);
-    if (parts.ring.count == 0) return;
-    const RayPlan ring = spares_rays(settings_) ? ring_rays(plan) : plan;
-    groups.allot(ring.direct, ring.direct);
-    limit_samples(groups, tile);
-    groups.start_at(parts.ring.first - tile.first);
-    store_tile(parts.ring, estimate(parts.ring, ring, groups, seed), out[1]);
+    DirectGroups groups = look_around(tile, plan[0].direct, seed);
+    std::vector<FinalPart> out;
+    const auto finish = [&](const Tile& part, const RayPlan& rays) {
+        if (part.count == 0) return;
+        groups.start_at(0);
+        groups.allot(rays.direct, rays.direct);
+        limit_samples(groups, tile);
+        groups.start_at(part.first - tile.first);
+        store_tile(part, estimate(part, rays, groups, seed), out.emplace_back());
+    };
+    for (uint32_t k = 0; k < kPilotParts; ++k) {
+        const uint32_t begin = part_begin(parts.own.count, k), end = part_begin(parts.own.count, k + 1);
+        finish({tile.first + begin, end - begin}, plan[k]);
+    }
+    finish(parts.ring, spares_rays(settings_) ? ring_rays(plan) : plan[0]);
+    return out;
 }
 
-void TermBaker::final_gather(std::vector<RayPlan>& plan) {
+void TermBaker::final_gather(std::vector<TilePlan>& plan) {
     const uint32_t n = s_.receivers.count();
     result_.irradiance.assign(n, Vec3(0.0f));
     result_.sh.assign(size_t{n} * kShCount, 0.0f);
     for (auto* v : {&result_.standard_error, &result_.total, &result_.total_error}) v->assign(n, 0.0f);
     result_.samples.assign(n, 0.0f);
     result_.inside.assign(n, 0.0f);
-    std::vector<FinalTile> parts(2 * s_.receivers.tiles.size()); // own and ring of each
+    std::vector<std::vector<FinalPart>> tiles(s_.receivers.tiles.size());
     const auto finish_tile = [&](size_t i) {
-        finish_parts(s_.receivers.tiles[i], plan[i], &parts[2 * i]);
-        const size_t lights = parts[2 * i].light.size() + parts[2 * i + 1].light.size();
+        tiles[i] = finish_parts(s_.receivers.tiles[i], plan[i]);
+        size_t lights = 0;
+        for (const FinalPart& part : tiles[i]) lights += part.light.size();
         budget_.take(kLightCopies * lights * sizeof(TermLight));
         return lights;
     };
@@ -176,15 +185,19 @@ void TermBaker::final_gather(std::vector<RayPlan>& plan) {
     if (settings_.time_limit > 0.0f)
         gather_in_rounds(plan, finish_tile);
     else
-        pool_.for_each(s_.receivers.tiles.size(), progress_, finish_tile);
+        pool_.for_each(tiles.size(), progress_, finish_tile);
+    std::vector<FinalPart> parts;
+    for (auto& tile : tiles) std::move(tile.begin(), tile.end(), std::back_inserter(parts));
     join(parts);
 }
 
-TermBaker::Estimate TermBaker::answer(size_t i, const RayPlan& plan, uint32_t seed) const {
+TermBaker::Estimate TermBaker::answer(size_t i, const TilePlan& plan, uint32_t seed) const {
     const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(s_.receivers, i);
-    DirectGroups groups = look_around(tile, plan.direct, seed);
-    groups.start_at(part.first - tile.first);
-    return estimate(part, plan, groups, seed);
+    const uint32_t first = part.first - tile.first;
+    const RayPlan& rays = plan[part_of(split(s_.receivers, tile).own.count, first)];
+    DirectGroups groups = look_around(tile, rays.direct, seed);
+    groups.start_at(first);
+    return estimate(part, rays, groups, seed);
 }
 
 std::unique_ptr<TermBaker> TermBaker::other_source() {
@@ -202,7 +215,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     return other;
 }
 
-void TermBaker::calibrate_error(const std::vector<RayPlan>& plan) {
+void TermBaker::calibrate_error(const std::vector<TilePlan>& plan) {
     TwinCheck check(s_.receivers, result_);
     const std::unique_ptr<TermBaker> other = other_source();
     pool_.for_each(
