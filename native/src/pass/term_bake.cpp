@@ -31,8 +31,9 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
           std::any_of(scene.scene.lights.begin(), scene.scene.lights.end(), [](const Light& l) { return l.primary; })),
       limits_{order_of(settings.combinations)},
       bookkeeping_(bookkeeping_effect(scene.scene.elements)),
-      rows_(pool, progress),
+      rows_(pool, progress, s_.receivers),
       budget_(settings.memory_limit, "light sets, doors and toggles", scene.scene.name) {
+    for (uint32_t r = 0; r < s_.receivers.count(); ++r) gathering_ += s_.receivers.coarse_from[r] == r;
     for (uint32_t e = 0; e < s_.scene.elements.size(); ++e)
         if (!s_.scene.elements[e].is_switch()) all_sets_.push_back(e);
 }
@@ -76,15 +77,11 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
 void TermBaker::take(std::vector<TileRows>& tiles) {
     const Working here(bookkeeping_);
     for (size_t i = 0; i < tiles.size(); ++i) tiles[i].count.resize(s_.receivers.tiles[i].count);
-    const ReceiverRows gathered = rows_.merge_tiles(tiles, table_);
-    current_ = rows_.make_rows(s_.receivers.count(), [&](uint64_t r, std::vector<TermColor>& out) {
-        const uint32_t from = s_.receivers.coarse_from[r];
-        out.insert(out.end(), gathered.begin(from), gathered.end(from));
-    });
+    current_ = rows_.merge_tiles(tiles, table_);
     if (first_ != nullptr) current_ = sets_as_one(current_);
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color);
-    result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(s_.receivers.count())));
+    result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(gathering_)));
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
@@ -106,8 +103,8 @@ ReceiverRows TermBaker::sets_as_one(const ReceiverRows& rows) {
     table_.add(terms);
     std::vector<uint32_t> number;
     for (const Term& t : terms) number.push_back(table_.find(t));
-    return rows_.make_rows(s_.receivers.count(), [&](uint64_t row, std::vector<TermColor>& out) {
-        const auto r = static_cast<uint32_t>(row), begin = static_cast<uint32_t>(out.size());
+    return rows_.receiver_rows([&](uint32_t r, std::vector<TermColor>& out) {
+        const auto begin = static_cast<uint32_t>(out.size());
         for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e) {
             const auto same = std::find_if(out.begin() + begin, out.end(),
                                            [&](const TermColor& o) { return o.term == number[e->term]; });
@@ -124,8 +121,7 @@ ReceiverRows TermBaker::sets_as_one(const ReceiverRows& rows) {
 /// What is too dim to matter alone once reflected, less than a texel would keep, is left out or made
 /// that bright by chance: rows get short, and their sum stays what it is in the mean.
 ReceiverRows TermBaker::prune(const ReceiverRows& rows, float share, uint32_t seed) const {
-    return rows_.make_rows(s_.receivers.count(), [&](uint64_t row, std::vector<TermColor>& kept) {
-        const auto r = static_cast<uint32_t>(row);
+    return rows_.receiver_rows([&](uint32_t r, std::vector<TermColor>& kept) {
         for (const TermColor* e = rows.begin(r); e != rows.end(r); ++e) {
             const float least = share * threshold_[e->term], level = max_component(glm::abs(e->color));
             if (table_[e->term].is_base() || level >= least)
@@ -162,7 +158,7 @@ void TermBaker::direct_source() {
 }
 
 void TermBaker::bounce(uint32_t index) {
-    radiance_ = rows_.radiance_rows(current_, s_.receivers, s_.scene.texel_count());
+    radiance_ = rows_.radiance_rows(current_, s_.scene.texel_count());
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
     aimed_.emplace_back(tiles.size());
@@ -205,15 +201,18 @@ EmitterSet TermBaker::find_bright_texels() {
 void TermBaker::find_thresholds() {
     std::vector<double> indirect(table_.count(), 0.0), lit(table_.count(), 0.0), all(table_.count(), 0.0),
         met(table_.count(), 0.0);
-    for (uint32_t r = 0; r + 1 < source_.first.size(); ++r)
+    for (uint32_t r = 0; r < s_.receivers.count(); ++r) {
+        if (s_.receivers.coarse_from[r] != r) continue;
+        const TermColor* d = direct_.begin(r);
         for (const TermColor* e = source_.begin(r); e != source_.end(r); ++e) {
-            const Vec3 direct = direct_.of(r, e->term);
             all[e->term] += std::abs(luminance(e->color));
             met[e->term] += 1.0;
-            if (direct == Vec3(0.0f)) continue;
-            indirect[e->term] += std::abs(luminance(e->color - direct));
+            while (d != direct_.end(r) && d->term < e->term) ++d;
+            if (d == direct_.end(r) || d->term != e->term || d->color == Vec3(0.0f)) continue;
+            indirect[e->term] += std::abs(luminance(e->color - d->color));
             lit[e->term] += 1.0;
         }
+    }
     threshold_.assign(table_.count(), 0.0f);
     for (uint32_t t = 0; t < table_.count(); ++t) {
         const uint32_t changed = table_.find(Term(table_[t].set()));
@@ -246,7 +245,7 @@ void TermBaker::find_source() {
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
     radiance_ =
         rows_.radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune, settings_.seed) : source_,
-                            s_.receivers, s_.scene.texel_count());
+                            s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     source_end_ = progress_.elapsed();
 }

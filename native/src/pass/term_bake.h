@@ -84,7 +84,8 @@ private:
     ThreadPool& pool_;
     Progress& progress_;
     double seconds_to_store_;
-    bool has_primary_; ///< some lamp's direct light is not stored
+    uint32_t gathering_ = 0; ///< receivers that gather coarse light themselves
+    bool has_primary_;       ///< some lamp's direct light is not stored
     /// Whose source this second one repeats for all light sets together, without progress of its own, to tell its
     /// noise; null: this is the first.
     const TermBaker* first_ = nullptr;

@@ -209,6 +209,7 @@ MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
         p.direct_variance += static_cast<float>(t.direct.total_squares(lane)) * share;
     }
     for (size_t term = 0; term < t.terms.size(); ++term) {
+        if (t.terms[term].order() >= 2) continue;
         float level = 0.0f;
         double gather = 0.0, direct = 0.0;
         for (uint32_t lane = 0; lane < lanes; ++lane) {

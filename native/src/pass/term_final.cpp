@@ -127,8 +127,9 @@ void TermBaker::gather_in_rounds(std::vector<TilePlan>& plan, const std::functio
     std::atomic<size_t> stored{0};
     for (size_t round = 0; round < rounds.count(); ++round) {
         const double start = progress_.elapsed();
-        const double lights = round > 0 ? static_cast<double>(stored) / receivers * s_.receivers.count()
-                                        : static_cast<double>(source_.entries.size());
+        const double lights =
+            round > 0 ? static_cast<double>(stored) / receivers * s_.receivers.count()
+                      : static_cast<double>(source_.entries.size()) / std::max(gathering_, 1u) * s_.receivers.count();
         const double pace = rays > 0.0 ? taken / rays : pilot_pace_;
         if (pace_->fit(round, kPlannedPart * time_left(lights) / pace, plan)) result_.time_limited = true;
         pool_.for_each(

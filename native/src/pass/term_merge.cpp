@@ -48,6 +48,7 @@ struct RowMaker::Part {
 
 ReceiverRows RowMaker::join(std::vector<Part>& parts) const {
     ReceiverRows rows;
+    rows.row_of = receivers_.coarse_from.data();
     std::vector<size_t> first_row, first_entry;
     size_t row = 0, entry = 0;
     for (const Part& p : parts) {
@@ -73,7 +74,15 @@ ReceiverRows RowMaker::join(std::vector<Part>& parts) const {
     return rows;
 }
 
-ReceiverRows RowMaker::make_rows(uint64_t count, const Make& make) const {
+ReceiverRows RowMaker::receiver_rows(const Make& make) const {
+    return make_rows(receivers_.count(), [&](uint64_t row, std::vector<TermColor>& out) {
+        const auto r = static_cast<uint32_t>(row);
+        if (receivers_.coarse_from[r] == r) make(r, out);
+    });
+}
+
+ReceiverRows RowMaker::make_rows(uint64_t count,
+                                 const std::function<void(uint64_t, std::vector<TermColor>&)>& make) const {
     constexpr uint64_t kPartRows = 1024;
     std::vector<Part> parts((count + kPartRows - 1) / kPartRows);
     pool_.for_each(
@@ -112,8 +121,7 @@ ReceiverRows RowMaker::merge_tiles(std::vector<TileRows>& tiles, TermTable& tabl
 }
 
 ReceiverRows RowMaker::add_rows(const ReceiverRows& a, const ReceiverRows& b) const {
-    return make_rows(a.first.size() - 1, [&](uint64_t row, std::vector<TermColor>& sum) {
-        const auto r = static_cast<uint32_t>(row);
+    return receiver_rows([&](uint32_t r, std::vector<TermColor>& sum) {
         const TermColor *i = a.begin(r), *j = b.begin(r);
         while (i != a.end(r) || j != b.end(r)) {
             const bool left = j == b.end(r) || (i != a.end(r) && i->term <= j->term),
@@ -125,15 +133,14 @@ ReceiverRows RowMaker::add_rows(const ReceiverRows& a, const ReceiverRows& b) co
     });
 }
 
-TermRows RowMaker::radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers,
-                                 uint64_t texels) const {
+TermRows RowMaker::radiance_rows(const ReceiverRows& irradiance, uint64_t texels) const {
     TermRows rows;
     rows.flags.assign(texels, 0);
     ReceiverRows radiance = make_rows(texels, [&](uint64_t t, std::vector<TermColor>& out) {
-        const uint32_t r = receivers.of_texel[t];
+        const uint32_t r = receivers_.of_texel[t];
         if (r == kNoReceiver) return;
-        rows.flags[t] = receivers.cut[r] != 0 ? kTexelCut : 0;
-        const Vec3 reflected = receivers.albedo[r] * kInvPi;
+        rows.flags[t] = receivers_.cut[r] != 0 ? kTexelCut : 0;
+        const Vec3 reflected = receivers_.albedo[r] * kInvPi;
         for (const TermColor* e = irradiance.begin(r); e != irradiance.end(r); ++e)
             out.push_back({e->term, e->color * reflected});
     });

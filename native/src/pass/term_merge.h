@@ -17,13 +17,14 @@ struct TileRows {
     std::vector<TermColor> entries; ///< term = index into terms
 };
 
-/// Sparse rows over all receivers: irradiance of each term.
+/// Sparse rows over all receivers: irradiance of each term, ascending.
 struct ReceiverRows {
-    std::vector<uint64_t> first{0}; ///< [receivers + 1]
-    std::vector<TermColor> entries;
+    std::vector<uint64_t> first{0};   ///< [receivers + 1]
+    std::vector<TermColor> entries;   ///< of receivers that gather coarse light themselves
+    const uint32_t* row_of = nullptr; ///< [receivers] the receiver whose row each has; none before there are rows
 
-    const TermColor* begin(uint32_t r) const { return entries.data() + first[r]; }
-    const TermColor* end(uint32_t r) const { return entries.data() + first[r + 1]; }
+    const TermColor* begin(uint32_t r) const { return entries.data() + first[row_of[r]]; }
+    const TermColor* end(uint32_t r) const { return entries.data() + first[row_of[r] + 1]; }
     Vec3 total(uint32_t r) const;
     /// Irradiance of one term at a receiver; 0 where the row lacks it.
     Vec3 of(uint32_t r, uint32_t term) const;
@@ -56,25 +57,28 @@ void sort_unique(std::vector<uint32_t>& values);
 /// Works on rows in parallel; results do not depend on the number of threads. All throw Cancelled.
 class RowMaker {
 public:
-    RowMaker(ThreadPool& pool, Progress& progress) : pool_(pool), progress_(progress) {}
+    RowMaker(ThreadPool& pool, Progress& progress, const LightmapReceivers& receivers)
+        : pool_(pool), progress_(progress), receivers_(receivers) {}
 
     /// Joins the rows of all tiles; terms that are new get their numbers in table.
     ReceiverRows merge_tiles(std::vector<TileRows>& tiles, TermTable& table) const;
     /// Entry by entry sum of two sets of rows.
     ReceiverRows add_rows(const ReceiverRows& a, const ReceiverRows& b) const;
     /// Outgoing radiance per page texel of receivers with these irradiances.
-    TermRows radiance_rows(const ReceiverRows& irradiance, const LightmapReceivers& receivers, uint64_t texels) const;
+    TermRows radiance_rows(const ReceiverRows& irradiance, uint64_t texels) const;
 
-    /// count rows, one by one: make(i, out) appends the entries of row i.
-    using Make = std::function<void(uint64_t, std::vector<TermColor>&)>;
-    ReceiverRows make_rows(uint64_t count, const Make& make) const;
+    /// Rows of the receivers that have their own: make(r, out) appends the entries of r.
+    using Make = std::function<void(uint32_t, std::vector<TermColor>&)>;
+    ReceiverRows receiver_rows(const Make& make) const;
 
 private:
     struct Part;
+    ReceiverRows make_rows(uint64_t count, const std::function<void(uint64_t, std::vector<TermColor>&)>& make) const;
     ReceiverRows join(std::vector<Part>& parts) const;
 
     ThreadPool& pool_;
     Progress& progress_;
+    const LightmapReceivers& receivers_;
 };
 
 } // namespace ajar
