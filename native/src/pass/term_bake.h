@@ -42,15 +42,15 @@ private:
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
     NoiseTrial try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
                          DirectGroups groups) const;
-    DirectGroups look_around(const Tile& tile, uint32_t samples, uint32_t seed) const;
+    DirectGroups look_around(const Tile& tile, uint32_t seed) const;
+    void share_samples(DirectGroups& groups, const Tile& tile, const Tile& part, uint32_t samples) const;
     struct Evenness;
     Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
-    using PacketLight = std::array<float, kTileReceivers / kLanes>;
-    PacketLight stored_light(const Tile& tile) const;
+    float stored_light(uint32_t begin, uint32_t end) const;
     /// Limits the samples of a set at receivers first to end of a tile; its luminance there, summed.
     float limit_set(DirectGroups& groups, const DirectGroups::Group& g, const Tile& tile, uint32_t first,
                     uint32_t end) const;
-    void limit_samples(DirectGroups& groups, const Tile& tile) const;
+    void limit_samples(DirectGroups& groups, const Tile& tile, uint32_t first, uint32_t end) const;
     TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
     float indirect_light(const Tile& tile) const;
     uint32_t rays_per_door(uint32_t samples) const;

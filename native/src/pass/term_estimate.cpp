@@ -64,18 +64,17 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
     return out;
 }
 
-/// Light that each packet of a tile will store, luminance summed over its receivers, or less: the source pass does
-/// not tell the lamps of no set apart whose direct light is stored and those whose is not.
-TermBaker::PacketLight TermBaker::stored_light(const Tile& tile) const {
-    PacketLight light{};
-    for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
-        float& sum = light[(r - tile.first) / kLanes];
+/// Light that receivers begin to end will store, luminance, summed, or less: the source pass does not tell the lamps
+/// of no set apart whose direct light is stored and those whose is not.
+float TermBaker::stored_light(uint32_t begin, uint32_t end) const {
+    float sum = 0.0f;
+    for (uint32_t r = begin; r < end; ++r) {
         sum += luminance(source_.total(r));
         if (!has_primary_) continue;
         for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
             if (table_[e->term].set() == kNoElement) sum -= luminance(e->color);
     }
-    return light;
+    return sum;
 }
 
 float TermBaker::limit_set(DirectGroups& groups, const DirectGroups::Group& g, const Tile& tile, uint32_t first,
@@ -91,18 +90,17 @@ float TermBaker::limit_set(DirectGroups& groups, const DirectGroups::Group& g, c
 /// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
 /// they do where a group is a small part of the light: its noise may be as much larger (pilot_noise). The source
 /// pass knows no bright texels, which are of no set: of that group counts what its emitters are expected to bring.
-void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile) const {
-    const PacketLight all = stored_light(tile);
-    for (const DirectGroups::Group& g : groups.groups())
-        for (uint32_t first = 0; first < tile.count; first += kLanes) {
-            const uint32_t packet = first / kLanes, end = std::min(first + kLanes, tile.count);
-            const float light =
-                g.set == kNoElement ? expected_light(g.choice, first, end) : limit_set(groups, g, tile, first, end);
-            if (const float full = kFullShare * all[packet]; light < full)
-                groups.limit(g.set, packet,
-                             std::max(kFewSamples,
-                                      static_cast<uint32_t>(std::ceil(static_cast<float>(g.samples) * light / full))));
-        }
+void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile, uint32_t first, uint32_t end) const {
+    const uint32_t packet = first / kLanes;
+    const float full = kFullShare * stored_light(tile.first + first, tile.first + end);
+    for (const DirectGroups::Group& g : groups.groups()) {
+        const float light =
+            g.set == kNoElement ? expected_light(g.choice, first, end) : limit_set(groups, g, tile, first, end);
+        if (light < full)
+            groups.limit(
+                g.set, packet,
+                std::max(kFewSamples, static_cast<uint32_t>(std::ceil(static_cast<float>(g.samples) * light / full))));
+    }
 }
 
 /// Luminance that comes back along a ray, and each term of it over what a texel keeps of that term, emission and
@@ -167,13 +165,22 @@ uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samp
     return rays;
 }
 
-/// The tile's emitters, with visibility asked for and samples shared out.
-DirectGroups TermBaker::look_around(const Tile& tile, uint32_t samples, uint32_t seed) const {
+/// The tile's emitters, with visibility asked for.
+DirectGroups TermBaker::look_around(const Tile& tile, uint32_t seed) const {
     DirectGroups groups(*final_emitters_, LightRoles::stored, guide().sets_of(tile));
-    progress_.add_rays(groups.begin(s_.tracer, s_.receivers, tile, samples, samples,
-                                    hash_combine(seed, s_.receivers.texel[tile.first])));
-    guide().limit_samples(groups, tile);
+    progress_.add_rays(
+        groups.begin(s_.tracer, s_.receivers, tile, 1, 1, hash_combine(seed, s_.receivers.texel[tile.first])));
     return groups;
+}
+
+/// Shares samples per receiver out to the receivers of a part of the tile, which count from its first from then on.
+void TermBaker::share_samples(DirectGroups& groups, const Tile& tile, const Tile& part, uint32_t samples) const {
+    groups.start_at(0);
+    groups.allot(samples, samples);
+    const uint32_t begin = part.first - tile.first, end = begin + part.count;
+    for (uint32_t first = begin; first < end; first += kLanes)
+        guide().limit_samples(groups, tile, first, std::min(first + kLanes, end));
+    groups.start_at(begin);
 }
 
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
@@ -228,8 +235,7 @@ MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
 NoiseTrial TermBaker::try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
                                 DirectGroups groups) const {
     const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
-    groups.allot(rays.direct, rays.direct);
-    limit_samples(groups, tile);
+    share_samples(groups, tile, part, rays.direct);
     const Estimate a = estimate(part, rays, groups, hash_combine(seed, 1)),
                    b = estimate(part, rays, groups, hash_combine(seed, 2));
     NoiseTrial trial{few, pilot_noise(a, part.count), {}, {}};
@@ -262,10 +268,10 @@ std::vector<TilePlan> TermBaker::plan_rays() {
     pool_.for_each(count, progress_, [&](size_t i) {
         const Tile& tile = s_.receivers.tiles[i];
         const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
-        DirectGroups groups = look_around(tile, small.direct, seed);
+        DirectGroups groups = look_around(tile, seed);
         for (uint32_t k = 0; k < kPilotParts; ++k) {
             const Tile part = pilot_part(split(s_.receivers, tile).typical(), k);
-            groups.start_at(part.first - tile.first);
+            share_samples(groups, tile, part, small.direct);
             pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
             if (is_trial(i, k))
                 trials[i / kTrialStep] = try_noise(tile, part, pilot[i * kPilotParts + k], large, groups);

@@ -148,14 +148,11 @@ void TermBaker::gather_in_rounds(std::vector<TilePlan>& plan, const std::functio
 std::vector<FinalPart> TermBaker::finish_parts(const Tile& tile, const TilePlan& plan) {
     const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
     const TileParts parts = split(s_.receivers, tile);
-    DirectGroups groups = look_around(tile, plan[0].direct, seed);
+    DirectGroups groups = look_around(tile, seed);
     std::vector<FinalPart> out;
     const auto finish = [&](const Tile& part, const RayPlan& rays) {
         if (part.count == 0) return;
-        groups.start_at(0);
-        groups.allot(rays.direct, rays.direct);
-        limit_samples(groups, tile);
-        groups.start_at(part.first - tile.first);
+        share_samples(groups, tile, part, rays.direct);
         store_tile(part, estimate(part, rays, groups, seed), out.emplace_back());
     };
     for (uint32_t k = 0; k < kPilotParts; ++k) {
@@ -194,10 +191,9 @@ void TermBaker::final_gather(std::vector<TilePlan>& plan) {
 
 TermBaker::Estimate TermBaker::answer(size_t i, const TilePlan& plan, uint32_t seed) const {
     const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(s_.receivers, i);
-    const uint32_t first = part.first - tile.first;
-    const RayPlan& rays = plan[part_of(split(s_.receivers, tile).own.count, first)];
-    DirectGroups groups = look_around(tile, rays.direct, seed);
-    groups.start_at(first);
+    const RayPlan& rays = plan[part_of(split(s_.receivers, tile).own.count, part.first - tile.first)];
+    DirectGroups groups = look_around(tile, seed);
+    share_samples(groups, tile, part, rays.direct);
     return estimate(part, rays, groups, seed);
 }
 
