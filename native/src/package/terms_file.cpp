@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
 #include "package/dispatch_plan.h"
@@ -49,10 +50,6 @@ private:
     }
     void count_dispatch(const PlannedDispatch& plan, const terms::Dispatch& d, uint64_t bytes);
     void summarise_waste(const std::vector<PlannedDispatch>& plan);
-    bool has_element(uint16_t term, uint32_t element) const {
-        const auto& e = content_.terms[term].elements;
-        return std::binary_search(e.begin(), e.end(), element);
-    }
 
     const PackageContent& content_;
     TermLists lists_;
@@ -196,21 +193,27 @@ void Builder::count_dispatch(const PlannedDispatch& plan, const terms::Dispatch&
 
 void Builder::summarise_waste(const std::vector<PlannedDispatch>& plan) {
     uint64_t run = 0, needed = 0;
-    for (uint32_t element = 0; element < content_.elements.size(); ++element) {
-        const auto is_of = [&](uint16_t term) { return has_element(term, element); };
-        ElementSummary& e = summary_.elements.emplace_back();
-        for (const PlannedDispatch& d : plan) {
-            if (std::none_of(d.palette.begin(), d.palette.end(), is_of)) continue;
-            run += d.texels.size();
-            for (const uint32_t texel : d.texels) {
-                const auto* list = lists_.term.data();
-                e.texels += std::any_of(list + lists_.first[texel], list + lists_.first[texel + 1], is_of);
-            }
-        }
-        needed += e.texels;
-        for (size_t t = 0; t < summary_.terms.size(); ++t)
-            if (is_of(static_cast<uint16_t>(t))) e.bytes += summary_.terms[t].bytes;
+    summary_.elements.resize(content_.elements.size());
+    // Calls visit once for each element that one of the terms has.
+    std::vector<uint64_t> met_by(content_.elements.size(), 0);
+    uint64_t caller = 0;
+    const auto each_element = [&](std::span<const uint16_t> of_terms, const auto& visit) {
+        ++caller;
+        for (const uint16_t term : of_terms)
+            for (const uint32_t element : content_.terms[term].elements)
+                if (std::exchange(met_by[element], caller) != caller) visit(element);
+    };
+    for (const PlannedDispatch& d : plan) {
+        each_element(d.palette, [&](uint32_t) { run += d.texels.size(); });
+        for (const uint32_t texel : d.texels)
+            each_element({&lists_.term[lists_.first[texel]], lists_.count(texel)}, [&](uint32_t element) {
+                ++summary_.elements[element].texels;
+                ++needed;
+            });
     }
+    for (size_t t = 0; t < summary_.terms.size(); ++t)
+        for (const uint32_t element : content_.terms[t].elements)
+            summary_.elements[element].bytes += summary_.terms[t].bytes;
     summary_.wasted_updates = needed > 0 ? static_cast<double>(run) / static_cast<double>(needed) : 1.0;
 }
 

@@ -48,6 +48,7 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
     rows.terms = direct != nullptr ? union_of_terms({&gather, direct}) : union_of_terms({&gather});
     const TermIndex gathered(gather, rows.terms), sampled(direct != nullptr ? *direct : gather, rows.terms);
     std::vector<uint32_t> terms;
+    NumberSet met(rows.terms.size());
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const uint32_t r = tile.first + lane;
         std::vector<std::pair<uint32_t, float>> mates; // lane and factor
@@ -55,10 +56,10 @@ TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const Te
         for (const uint32_t q : block_of(s_.scene, s_.receivers, r)) {
             if (q != r && !may_share(s_.receivers, q, r)) continue;
             mates.emplace_back(q - tile.first, gather_scale(gather, q - tile.first));
-            gathered.collect(q - tile.first, terms);
+            gathered.collect(q - tile.first, met);
         }
-        if (direct != nullptr) sampled.collect(lane, terms);
-        sort_unique(terms);
+        if (direct != nullptr) sampled.collect(lane, met);
+        met.take(terms);
         const size_t before = rows.entries.size();
         for (const uint32_t t : terms) {
             Vec3 e(0.0f);

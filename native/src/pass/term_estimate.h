@@ -23,9 +23,10 @@ struct TermBaker::Estimate {
         terms = union_of_terms({&gather, &direct});
         index = {TermIndex(gather, terms), TermIndex(direct, terms)};
         terms_at.resize(lanes);
+        NumberSet met(terms.size());
         for (uint32_t lane = 0; lane < lanes; ++lane) {
-            for (const TermIndex& i : index) i.collect(lane, terms_at[lane]);
-            sort_unique(terms_at[lane]);
+            for (const TermIndex& i : index) i.collect(lane, met);
+            met.take(terms_at[lane]);
         }
     }
     const TermSums::Block* gathered(size_t term, uint32_t lane) const { return index[0].block(term, lane); }

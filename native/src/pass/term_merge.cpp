@@ -35,11 +35,6 @@ TermIndex::TermIndex(const TermSums& sums, const std::vector<Term>& terms)
     }
 }
 
-void sort_unique(std::vector<uint32_t>& values) {
-    std::sort(values.begin(), values.end());
-    values.erase(std::unique(values.begin(), values.end()), values.end());
-}
-
 /// Rows of some receivers that follow each other.
 struct RowMaker::Part {
     std::vector<uint32_t> count; ///< entries of each row

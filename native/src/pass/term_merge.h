@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <bit>
 #include <functional>
 #include <vector>
 
@@ -33,6 +34,22 @@ struct ReceiverRows {
 /// The terms of several sums side by side, each once, ascending.
 std::vector<Term> union_of_terms(const std::vector<const TermSums*>& sums);
 
+/// Numbers below a limit, each once.
+class NumberSet {
+public:
+    explicit NumberSet(size_t limit) : words_((limit + 63) / 64, 0) {}
+    void add(uint32_t number) { words_[number / 64] |= uint64_t{1} << (number % 64); }
+    /// Moves them out, ascending.
+    void take(std::vector<uint32_t>& out) {
+        for (size_t w = 0; w < words_.size(); ++w)
+            for (; words_[w] != 0; words_[w] &= words_[w] - 1)
+                out.push_back(static_cast<uint32_t>(64 * w) + static_cast<uint32_t>(std::countr_zero(words_[w])));
+    }
+
+private:
+    std::vector<uint64_t> words_;
+};
+
 /// How the slots of some sums and a list of terms, ascending, belong together.
 class TermIndex {
 public:
@@ -41,18 +58,15 @@ public:
     const TermSums::Block* block(size_t term, uint32_t lane) const {
         return slot_[term] != TermSums::kNone ? sums_->block(slot_[term], lane) : nullptr;
     }
-    /// Appends the terms that bring light to a lane.
-    void collect(uint32_t lane, std::vector<uint32_t>& out) const {
-        for (const uint32_t slot : sums_->slots_at(lane)) out.push_back(term_[slot]);
+    /// Adds the terms that bring light to a lane.
+    void collect(uint32_t lane, NumberSet& out) const {
+        for (const uint32_t slot : sums_->slots_at(lane)) out.add(term_[slot]);
     }
 
 private:
     const TermSums* sums_;
     std::vector<uint32_t> slot_, term_; ///< of each term, of each slot
 };
-
-/// Ascending, each once.
-void sort_unique(std::vector<uint32_t>& values);
 
 /// Works on rows in parallel; results do not depend on the number of threads. All throw Cancelled.
 class RowMaker {
