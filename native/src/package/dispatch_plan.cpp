@@ -79,25 +79,13 @@ std::vector<Combination> split(const std::vector<PackagePage>& pages, Combinatio
     return pieces;
 }
 
-size_t shared_count(const std::vector<uint16_t>& a, const std::vector<uint16_t>& b) {
-    size_t shared = 0;
-    for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
-        shared += *i == *j;
-        if (*i < *j)
-            ++i;
-        else if (*j < *i)
-            ++j;
-        else
-            ++i, ++j;
-    }
-    return shared;
-}
-
 /// Receivers updated in vain, over changes of each term alone, if c joined d; none if it cannot.
-uint64_t waste(const PlannedDispatch& d, const Combination& c) {
+/// has: [terms] 1 for those of c.
+uint64_t waste(const PlannedDispatch& d, const Combination& c, const std::vector<uint8_t>& has) {
     constexpr uint64_t kNever = ~uint64_t{0};
     if (d.texels.size() + c.texels.size() > kSharedReceivers) return kNever;
-    const size_t shared = shared_count(d.palette, c.terms);
+    size_t shared = 0;
+    for (const uint16_t term : d.palette) shared += has[term];
     if (d.palette.size() + c.terms.size() - shared > terms::kMaxPalette) return kNever;
     return (c.terms.size() - shared) * d.texels.size() + (d.palette.size() - shared) * c.texels.size();
 }
@@ -112,20 +100,23 @@ void join(PlannedDispatch& d, const Combination& c) {
 
 /// Puts combinations of one page, class and layout together, greedily, largest first
 /// (algorithms.md 8.5).
-std::vector<PlannedDispatch> cluster(Class kind, std::vector<Combination> pieces) {
+std::vector<PlannedDispatch> cluster(Class kind, std::vector<Combination> pieces, size_t terms) {
     std::stable_sort(pieces.begin(), pieces.end(),
                      [](const auto& a, const auto& b) { return a.texels.size() > b.texels.size(); });
     std::vector<PlannedDispatch> dispatches;
+    std::vector<uint8_t> has(terms, 0);
     for (const Combination& c : pieces) {
+        for (const uint16_t term : c.terms) has[term] = 1;
         PlannedDispatch* best = nullptr;
         uint64_t least = kDispatchCost;
         const size_t oldest = dispatches.size() > kOpenDispatches ? dispatches.size() - kOpenDispatches : 0;
         for (size_t i = oldest; i < dispatches.size(); ++i) {
-            const uint64_t w = waste(dispatches[i], c);
+            const uint64_t w = waste(dispatches[i], c, has);
             if (w < least) least = w, best = &dispatches[i];
         }
         if (best == nullptr) best = &dispatches.emplace_back(PlannedDispatch{kind, 0, c.is_signed, c.page, {}, {}});
         join(*best, c);
+        for (const uint16_t term : c.terms) has[term] = 0;
     }
     return dispatches;
 }
@@ -157,7 +148,7 @@ std::vector<PlannedDispatch> plan_dispatches(const std::vector<PackagePage>& pag
         }
     }
     for (auto& [key, pieces] : groups)
-        for (PlannedDispatch& d : cluster(std::get<1>(key), std::move(pieces))) {
+        for (PlannedDispatch& d : cluster(std::get<1>(key), std::move(pieces), lists.terms.size())) {
             sort_morton(pages, d.texels);
             plan.push_back(std::move(d));
         }
