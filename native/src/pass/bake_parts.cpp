@@ -75,6 +75,11 @@ uint32_t part_begin(uint32_t count, uint32_t k) {
     return std::min(packets * k / kPilotParts * kLanes, count);
 }
 
+Tile tile_part(const Tile& tile, uint32_t k) {
+    const uint32_t begin = part_begin(tile.count, k);
+    return {tile.first + begin, part_begin(tile.count, k + 1) - begin};
+}
+
 uint32_t part_of(uint32_t count, uint32_t local) {
     uint32_t k = kPilotParts - 1;
     while (part_begin(count, k) > local) --k;

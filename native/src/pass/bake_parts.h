@@ -60,6 +60,7 @@ float dark_level(const std::vector<MeasuredNoise>& pilot);
 
 /// First receiver of part k of a tile that has count; count for kPilotParts. Parts are whole packets.
 uint32_t part_begin(uint32_t count, uint32_t k);
+Tile tile_part(const Tile& tile, uint32_t k);
 /// The part that a receiver lies in.
 uint32_t part_of(uint32_t count, uint32_t local);
 /// Receivers that stand for a part of a tile in the pilot pass.

@@ -170,10 +170,11 @@ void TermBaker::bounce(uint32_t index) {
             if (tile.count == 0) return;
             TermSums sums(table_);
             GatherOptions o = bounce_options(settings_, index);
-            TileAims aims(s_.receivers, tile);
-            const uint64_t rays = aim_in_bounce(aims, index, i, tile, o);
+            // The second source repeats what the first chose.
+            aimed_[index - 1][i] = first_ != nullptr ? first_->aimed_[index - 1][i] : find_doors(tile, o.seed);
+            const TileAims aims = aim_at(aimed_[index - 1][i], tile, o.samples);
             o.aims = aims.empty() ? nullptr : &aims;
-            progress_.add_rays(rays + gather_tile(s_, tile, o, &radiance_, limits_, sums));
+            progress_.add_rays(gather_tile(s_, tile, o, &radiance_, limits_, sums));
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
         first_ == nullptr);
@@ -254,6 +255,7 @@ void TermBaker::find_source() {
 BakeResult TermBaker::run() {
     find_source();
     progress_.begin_stage(AJAR_STAGE_PILOT, 0.30f);
+    find_aims();
     std::vector<TilePlan> plan = plan_rays();
     progress_.begin_stage(AJAR_STAGE_GATHER, 0.93f);
     final_gather(plan);

@@ -41,9 +41,10 @@ private:
     std::vector<TilePlan> plan_rays();
     static MeasuredNoise pilot_noise(const Estimate& estimate, uint32_t lanes);
     NoiseTrial try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
-                         DirectGroups groups) const;
+                         DirectGroups groups, const std::vector<uint32_t>& doors) const;
     DirectGroups look_around(const Tile& tile, uint32_t seed) const;
     void share_samples(DirectGroups& groups, const Tile& tile, const Tile& part, uint32_t samples) const;
+    static constexpr uint32_t kAimedParts = kPilotParts + 1; ///< of a tile: its own and the ring
     struct Evenness;
     Evenness evenness(uint32_t set, uint32_t begin, uint32_t end) const;
     float stored_light(uint32_t begin, uint32_t end) const;
@@ -54,14 +55,16 @@ private:
     TileAims::Arrival arrival(const Ray& ray, const Hit& hit) const;
     float indirect_light(const Tile& tile) const;
     uint32_t rays_per_door(uint32_t samples) const;
-    uint64_t aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const;
-    /// The same in a bounce of a part of tile i, where the second source repeats what the first chose.
-    uint64_t aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const Tile& part, const GatherOptions& options);
-    Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups, uint32_t seed) const;
+    std::vector<uint32_t> find_doors(const Tile& part, uint32_t seed) const;
+    void find_aims();
+    const std::vector<uint32_t>& doors_of(size_t tile, const Tile& piece) const;
+    TileAims aim_at(const std::vector<uint32_t>& doors, const Tile& part, uint32_t samples) const;
+    Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
+                      const std::vector<uint32_t>& doors, uint32_t seed) const;
     void final_gather(std::vector<TilePlan>& plan);
     /// finish_tile: of a tile; returns how much light it stores.
     void gather_in_rounds(std::vector<TilePlan>& plan, const std::function<size_t(size_t)>& finish_tile);
-    std::vector<struct FinalPart> finish_parts(const Tile& tile, const TilePlan& plan);
+    std::vector<struct FinalPart> finish_parts(size_t tile, const TilePlan& plan);
     void store_tile(const Tile& tile, const Estimate& estimate, struct FinalPart& out);
     void join(std::vector<struct FinalPart>& tiles);
     /// Another answer for the part of tile i that is checked.
@@ -99,11 +102,12 @@ private:
     TermRows radiance_;                      ///< what the next gather sees
     std::vector<float> threshold_;           ///< per term: least luminance worth keeping where it is not lit directly
     std::unique_ptr<EmitterSet> final_emitters_;
-    std::shared_ptr<BoxesInSight> doors_;                 ///< that rays are aimed at; null: none are
-    std::vector<std::vector<std::vector<AimBox>>> aimed_; ///< [bounces][tiles] what the rays were aimed at
-    double pilot_pace_ = 0.0;                             ///< seconds per ray
-    std::unique_ptr<TilePace> pace_;                      ///< where time is limited
-    Effect bookkeeping_;                                  ///< what keeping terms apart counts as
+    std::shared_ptr<BoxesInSight> doors_;                   ///< that rays are aimed at; null: none are
+    std::vector<std::vector<std::vector<uint32_t>>> aimed_; ///< [bounces][tiles] doors that rays were aimed at
+    std::vector<std::vector<uint32_t>> aims_;               ///< [tiles][kAimedParts] those of the final gather
+    double pilot_pace_ = 0.0;                               ///< seconds per ray
+    std::unique_ptr<TilePace> pace_;                        ///< where time is limited
+    Effect bookkeeping_;                                    ///< what keeping terms apart counts as
     RowMaker rows_;
     MemoryBudget budget_; ///< of the pass in hand
 };

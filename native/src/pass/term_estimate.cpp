@@ -138,31 +138,56 @@ uint32_t TermBaker::rays_per_door(uint32_t samples) const {
     return (share + 1) & ~1u;
 }
 
-uint64_t TermBaker::aim_in_bounce(TileAims& aims, uint32_t index, size_t i, const Tile& part,
-                                  const GatherOptions& options) {
-    if (first_ != nullptr) {
-        for (const AimBox& box : first_->aimed_[index - 1][i]) aims.add(box, rays_per_door(options.samples));
-        return 0;
+/// Doors through which light of some account comes to a part of a tile.
+std::vector<uint32_t> TermBaker::find_doors(const Tile& part, uint32_t seed) const {
+    std::vector<uint32_t> found;
+    if (part.count == 0 || doors_ == nullptr || doors_->boxes().empty()) return found;
+    const Working here(Effect::doors);
+    const float least = kAimShare * indirect_light(part);
+    const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[part.first]);
+    const auto look = [&](const Ray& r, const Hit& h) { return arrival(r, h); };
+    TileAims aims(s_.receivers, part);
+    uint64_t rays = 0;
+    for (const uint32_t door : doors_->from(part.first, rays)) {
+        if (found.size() == kMostAims) break;
+        rays += aims.add(s_.tracer, doors_->boxes()[door], look, 1, least, own_seed);
+        if (aims.count() > found.size()) found.push_back(door);
     }
-    const uint64_t rays = aim_at_doors(aims, part, options.samples, options.seed);
-    for (uint32_t aim = 0; aim < aims.count(); ++aim) aimed_[index - 1][i].push_back(aims.box(aim));
-    return rays;
+    progress_.add_rays(rays);
+    return found;
 }
 
-/// Rays into the doors through which light of some account comes to the tile.
-uint64_t TermBaker::aim_at_doors(TileAims& aims, const Tile& tile, uint32_t samples, uint32_t seed) const {
-    if (doors_ == nullptr || doors_->boxes().empty()) return 0;
-    const Working here(Effect::doors);
-    const float least = kAimShare * guide().indirect_light(tile);
-    const uint32_t own_seed = hash_combine(seed, s_.receivers.texel[tile.first]);
-    uint64_t rays = 0;
-    for (const uint32_t door : doors_->from(tile.first, rays)) {
-        if (aims.count() == kMostAims) break;
-        rays += aims.add(
-            s_.tracer, doors_->boxes()[door], [&](const Ray& r, const Hit& h) { return guide().arrival(r, h); },
-            rays_per_door(samples), least, own_seed);
-    }
-    return rays;
+/// Those of every part of the final gather.
+void TermBaker::find_aims() {
+    const std::vector<Tile>& tiles = s_.receivers.tiles;
+    aims_.resize(tiles.size() * kAimedParts);
+    if (!gathers()) return;
+    pool_.for_each(
+        tiles.size(), progress_,
+        [&](size_t i) {
+            const TileParts parts = split(s_.receivers, tiles[i]);
+            const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
+            for (uint32_t k = 0; k < kPilotParts; ++k)
+                aims_[i * kAimedParts + k] = find_doors(tile_part(parts.own, k), seed);
+            aims_[i * kAimedParts + kPilotParts] = find_doors(parts.ring, seed);
+        },
+        false);
+}
+
+/// Those of a piece of a part of tile i.
+const std::vector<uint32_t>& TermBaker::doors_of(size_t i, const Tile& piece) const {
+    const Tile& tile = s_.receivers.tiles[i];
+    const uint32_t own = split(s_.receivers, tile).own.count, first = piece.first - tile.first;
+    return guide().aims_[i * kAimedParts + (first < own ? part_of(own, first) : kPilotParts)];
+}
+
+/// Rays of a part into doors, beside samples of the hemisphere.
+TileAims TermBaker::aim_at(const std::vector<uint32_t>& doors, const Tile& part, uint32_t samples) const {
+    TileAims aims(s_.receivers, part);
+    const uint32_t rays = rays_per_door(samples);
+    for (const uint32_t door : doors)
+        if (rays > 0) aims.add(doors_->boxes()[door], rays);
+    return aims;
 }
 
 /// The tile's emitters, with visibility asked for.
@@ -184,14 +209,13 @@ void TermBaker::share_samples(DirectGroups& groups, const Tile& tile, const Tile
 }
 
 TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
-                                        uint32_t seed) const {
+                                        const std::vector<uint32_t>& doors, uint32_t seed) const {
     Estimate t(table_);
     t.plan = plan;
     const GatherScene scene = final_scene();
     uint64_t rays = 0;
     const TermRows* rows = settings_.bounces > 0 ? &radiance_ : nullptr;
-    TileAims aims(s_.receivers, tile);
-    if (plan.gather != 0) rays += aim_at_doors(aims, tile, plan.gather, seed);
+    const TileAims aims = aim_at(doors, tile, plan.gather);
     const TileAims* aimed = aims.empty() ? nullptr : &aims;
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
                           limits_, t.direct);
@@ -233,11 +257,11 @@ MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
 }
 
 NoiseTrial TermBaker::try_noise(const Tile& tile, const Tile& part, const MeasuredNoise& few, const RayPlan& rays,
-                                DirectGroups groups) const {
+                                DirectGroups groups, const std::vector<uint32_t>& doors) const {
     const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
     share_samples(groups, tile, part, rays.direct);
-    const Estimate a = estimate(part, rays, groups, hash_combine(seed, 1)),
-                   b = estimate(part, rays, groups, hash_combine(seed, 2));
+    const Estimate a = estimate(part, rays, groups, doors, hash_combine(seed, 1)),
+                   b = estimate(part, rays, groups, doors, hash_combine(seed, 2));
     NoiseTrial trial{few, pilot_noise(a, part.count), {}, {}};
     const float half = 0.5f / static_cast<float>(part.count);
     for (uint32_t lane = 0; lane < part.count; ++lane) {
@@ -271,10 +295,11 @@ std::vector<TilePlan> TermBaker::plan_rays() {
         DirectGroups groups = look_around(tile, seed);
         for (uint32_t k = 0; k < kPilotParts; ++k) {
             const Tile part = pilot_part(split(s_.receivers, tile).typical(), k);
+            const std::vector<uint32_t>& doors = doors_of(i, part);
             share_samples(groups, tile, part, small.direct);
-            pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, seed), part.count);
+            pilot[i * kPilotParts + k] = pilot_noise(estimate(part, small, groups, doors, seed), part.count);
             if (is_trial(i, k))
-                trials[i / kTrialStep] = try_noise(tile, part, pilot[i * kPilotParts + k], large, groups);
+                trials[i / kTrialStep] = try_noise(tile, part, pilot[i * kPilotParts + k], large, groups, doors);
         }
     });
     pilot_pace_ =

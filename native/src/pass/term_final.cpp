@@ -145,7 +145,8 @@ void TermBaker::gather_in_rounds(std::vector<TilePlan>& plan, const std::functio
 }
 
 /// Every part of a tile with its own rays, then the ring.
-std::vector<FinalPart> TermBaker::finish_parts(const Tile& tile, const TilePlan& plan) {
+std::vector<FinalPart> TermBaker::finish_parts(size_t i, const TilePlan& plan) {
+    const Tile& tile = s_.receivers.tiles[i];
     const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
     const TileParts parts = split(s_.receivers, tile);
     DirectGroups groups = look_around(tile, seed);
@@ -153,12 +154,9 @@ std::vector<FinalPart> TermBaker::finish_parts(const Tile& tile, const TilePlan&
     const auto finish = [&](const Tile& part, const RayPlan& rays) {
         if (part.count == 0) return;
         share_samples(groups, tile, part, rays.direct);
-        store_tile(part, estimate(part, rays, groups, seed), out.emplace_back());
+        store_tile(part, estimate(part, rays, groups, doors_of(i, part), seed), out.emplace_back());
     };
-    for (uint32_t k = 0; k < kPilotParts; ++k) {
-        const uint32_t begin = part_begin(parts.own.count, k), end = part_begin(parts.own.count, k + 1);
-        finish({tile.first + begin, end - begin}, plan[k]);
-    }
+    for (uint32_t k = 0; k < kPilotParts; ++k) finish(tile_part(parts.own, k), plan[k]);
     finish(parts.ring, spares_rays(settings_) ? ring_rays(plan) : plan[0]);
     return out;
 }
@@ -172,7 +170,7 @@ void TermBaker::final_gather(std::vector<TilePlan>& plan) {
     result_.inside.assign(n, 0.0f);
     std::vector<std::vector<FinalPart>> tiles(s_.receivers.tiles.size());
     const auto finish_tile = [&](size_t i) {
-        tiles[i] = finish_parts(s_.receivers.tiles[i], plan[i]);
+        tiles[i] = finish_parts(i, plan[i]);
         size_t lights = 0;
         for (const FinalPart& part : tiles[i]) lights += part.light.size();
         budget_.take(kLightCopies * lights * sizeof(TermLight));
@@ -194,7 +192,7 @@ TermBaker::Estimate TermBaker::answer(size_t i, const TilePlan& plan, uint32_t s
     const RayPlan& rays = plan[part_of(split(s_.receivers, tile).own.count, part.first - tile.first)];
     DirectGroups groups = look_around(tile, seed);
     share_samples(groups, tile, part, rays.direct);
-    return estimate(part, rays, groups, seed);
+    return estimate(part, rays, groups, doors_of(i, part), seed);
 }
 
 std::unique_ptr<TermBaker> TermBaker::other_source() {
