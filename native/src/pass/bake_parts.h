@@ -25,8 +25,9 @@ struct RayPlan {
     uint32_t gather = 0, direct = 0;
 };
 
-/// The rays of a ring receiver are a quarter of what its place would get: lookups give it at most half their weight,
-/// so twice the standard error there makes none of them much noisier than the texels of the chart are.
+/// The rays of a ring receiver are a quarter of what its place would get. Lookups at a chart's edge give it at most
+/// half their weight, at a corner three of them a quarter each: with twice the standard error there, none is much
+/// noisier than the texels of the chart are.
 inline constexpr uint32_t kRingShare = 4;
 RayPlan ring_rays(const RayPlan& plan);
 /// Whether receivers of the ring get that: else rays follow neither a noise nor a time, and all get the same number.
@@ -60,6 +61,7 @@ float dark_level(const std::vector<MeasuredNoise>& pilot);
 
 /// First receiver of part k of a tile that has count; count for kPilotParts. Parts are whole packets.
 uint32_t part_begin(uint32_t count, uint32_t k);
+/// The receivers of part k.
 Tile tile_part(const Tile& tile, uint32_t k);
 /// The part that a receiver lies in.
 uint32_t part_of(uint32_t count, uint32_t local);

@@ -87,9 +87,10 @@ float TermBaker::limit_set(DirectGroups& groups, const DirectGroups::Group& g, c
     return seen.sum;
 }
 
-/// Where the source pass met no light of a set, or much the same everywhere, few samples of the set do; and so
-/// they do where a group is a small part of the light: its noise may be as much larger (pilot_noise). The source
-/// pass knows no bright texels, which are of no set: of that group counts what its emitters are expected to bring.
+/// For the packet of receivers first to end of a tile: where the source pass met no light of a set, or much the same
+/// everywhere, few samples of the set do; and so they do where a group is a small part of the light: its noise may be
+/// as much larger (pilot_noise). The source pass knows no bright texels, which are of no set: of that group counts
+/// what its emitters are expected to bring.
 void TermBaker::limit_samples(DirectGroups& groups, const Tile& tile, uint32_t first, uint32_t end) const {
     const uint32_t packet = first / kLanes;
     const float full = kFullShare * stored_light(tile.first + first, tile.first + end);
@@ -231,6 +232,7 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
 
 /// What drives a tile's ray counts: all light together, and each term that is a fair part of it. Of the variance
 /// that all light may have, a term may have as large a part as it has of the light: dim terms may be noisier.
+/// Products of elements are made of the same samples as what they change, and add nothing that those do not tell.
 MeasuredNoise TermBaker::pilot_noise(const Estimate& t, uint32_t lanes) {
     const float share = 1.0f / static_cast<float>(lanes);
     MeasuredNoise p;
