@@ -89,6 +89,28 @@ TEST_P(Ring, HoldsTheLightOfItsChart) {
         }
 }
 
+TEST(RingOfABakeWithElements, SeesLampsHoweverFewItsSamplesAre) {
+    kit::Scene scene;
+    const uint32_t page = scene.page(kWidth, kHeight);
+    scene.instance(scene.mesh(kit::box({0, 0, 0}, {3, 4, 2}, true, kMargin)), scene.diffuse({0.5f, 0.5f, 0.5f}), page);
+    scene.current_set = scene.element(AJAR_ELEMENT_LIGHT_SET, "lamp");
+    scene.point_light({1.5f, 2.0f, 1.0f}, 100.0f);
+    scene.commit();
+    ajar_settings s = kit::settings(0, 64);
+    s.noise_target = 0.05f;
+    s.direct_samples = 1;
+    const kit::Bake bake(scene, s);
+    const kit::Layer light = bake.term(1, kWidth, kHeight), valid = bake.layer(AJAR_LAYER_VALIDITY);
+    int ring = 0;
+    for (uint32_t y = 0; y < kHeight; ++y)
+        for (uint32_t x = 0; x < kWidth; ++x) {
+            if (valid.at(x, y) < 0.7f) continue;
+            EXPECT_GT(light.at(x, y), 0.1f) << x << " " << y;
+            ring += is_ring(x, y);
+        }
+    EXPECT_GT(ring, 300);
+}
+
 TEST(RingOfAPlainBake, TakesReflectedLightOfItsChart) {
     const EvenRoom room(false);
     ajar_settings s = kit::settings(2, 64);

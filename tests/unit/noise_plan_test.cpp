@@ -75,6 +75,18 @@ TEST(NoisePlan, PartsOfTilesGetWhatTheyNeed) {
     EXPECT_EQ(plan_tiles(pilot, {32, 32}, goal)[1][0].gather, 128u);
 }
 
+TEST(NoisePlan, TheRingKeepsSomeOfFewRays) {
+    for (uint32_t rays = 1; rays < 40; ++rays) {
+        TilePlan plan;
+        plan.fill({rays, rays});
+        const RayPlan ring = ring_rays(plan);
+        EXPECT_GE(ring.direct, 1u) << rays;
+        EXPECT_LE(ring.direct, rays);
+        EXPECT_EQ(ring.gather & (ring.gather - 1), 0u) << "strata fill powers of two";
+    }
+    EXPECT_EQ(ring_rays(RayPlan{}).gather, 0u);
+}
+
 TEST(NoisePlan, PartsOfATileAreWholePacketsAndMissNone) {
     for (const uint32_t count : {0u, 1u, 8u, 9u, 17u, 100u, 256u}) {
         EXPECT_EQ(part_begin(count, 0), 0u);

@@ -56,7 +56,7 @@ std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const
 
 RayPlan ring_rays(const RayPlan& plan) {
     const auto part = [](uint32_t rays) {
-        return std::max(std::bit_floor(rays / kRingShare), std::min(rays, kLeastRingRays));
+        return std::bit_floor(std::max(rays / kRingShare, std::min(rays, kLeastRingRays)));
     };
     return {part(plan.gather), part(plan.direct)};
 }

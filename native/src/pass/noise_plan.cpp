@@ -168,8 +168,8 @@ TilePlan plan_tile(const MeasuredNoise* parts, const RayPlan& pilot_rays, const 
 
 RayPlan ring_rays(const TilePlan& plan) {
     RayPlan sum;
-    for (const RayPlan& p : plan) sum.gather += p.gather / kPilotParts, sum.direct += p.direct / kPilotParts;
-    return ring_rays(sum);
+    for (const RayPlan& p : plan) sum.gather += p.gather, sum.direct += p.direct;
+    return ring_rays(RayPlan{sum.gather / kPilotParts, sum.direct / kPilotParts});
 }
 
 double mean_rays(const TilePlan& plan) {

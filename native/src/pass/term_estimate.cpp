@@ -205,7 +205,7 @@ void TermBaker::share_samples(DirectGroups& groups, const Tile& tile, const Tile
     groups.allot(samples, samples);
     const uint32_t begin = part.first - tile.first, end = begin + part.count;
     for (uint32_t first = begin; first < end; first += kLanes)
-        guide().limit_samples(groups, tile, first, std::min(first + kLanes, end));
+        guide().limit_samples(groups, tile, first, std::min(first + kLanes, tile.count));
     groups.start_at(begin);
 }
 

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <numeric>
+#include <tuple>
 
 #include "base/hash.h"
 #include "base/owen_sobol.h"
@@ -23,7 +24,7 @@ uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
     return (v | (v << 1)) & 0x55;
 }
 
-/// Texels on charts, those of the ring whose 2x2 block has some on charts, and the others beside one on a chart.
+/// Texels on charts, those of the ring whose 2x2 block has some on charts, and the others.
 enum class TexelKind : uint8_t { on_chart, near_chart, apart };
 
 /// Texels from low to high of a page, those of them that it has.
@@ -59,8 +60,7 @@ public:
         if (on_chart_[f.texel]) return TexelKind::on_chart;
         const Page& page = scene_.pages[scene_.instance_of(f.triangle).page];
         const auto [x, y] = place_of(page, f.texel);
-        const bool block = any(page, {page, x & ~1, y & ~1, 2}), around = any(page, {page, x - 1, y - 1, 3});
-        return !block && around ? TexelKind::apart : TexelKind::near_chart;
+        return any(page, {page, x & ~1, y & ~1, 2}) ? TexelKind::near_chart : TexelKind::apart;
     }
 
 private:
@@ -347,17 +347,20 @@ void Builder::find_sharing(const Tile& tile) {
     }
 }
 
-/// The receiver on a chart next to one of the ring that faces most the same way, the nearest of several.
+/// The receiver on a chart next to one of the ring: of those that it sees the one that faces most the same way, the
+/// nearest of several.
 uint32_t Builder::stand_in(uint32_t r) const {
     const Page& page = scene.pages[scene.instance_of(out.triangle[r]).page];
     const auto [x, y] = place_of(page, out.texel[r]);
+    const Vec3 p = out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
     uint32_t best = r;
-    std::pair<float, float> best_rank{};
+    std::tuple<bool, float, float> best_rank{};
     TexelRange(page, x - 1, y - 1, 3).each(page, [&](uint64_t t) {
         const uint32_t q = out.of_texel[t];
         if (q == kNoReceiver || kind[q] != TexelKind::on_chart) return;
-        const Vec3 to = out.shown_origin(q) - out.shown_origin(r);
-        const std::pair rank{std::round(8.0f * glm::dot(out.frame[q].z, out.frame[r].z)), -glm::dot(to, to)};
+        const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
+        const std::tuple rank{!tracer.occluded({p, to, 0.0f, 1.0f}, kMaskWall),
+                              std::round(8.0f * glm::dot(out.frame[q].z, out.frame[r].z)), -glm::dot(to, to)};
         if (best != r && rank <= best_rank) return;
         best = q, best_rank = rank;
     });

@@ -39,7 +39,7 @@ struct LightmapReceivers {
     std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
     std::vector<uint8_t> ring;      ///< outside its chart; only bilinear lookups touch it
     /// [count] receiver that gathers the light to be reflected: itself, or for those of the ring in whose 2x2 block
-    /// there are no others one on a chart next to it. No ray meets such texels.
+    /// there are no others one on a chart next to it. Rays read such texels only where a wall cuts one beside them.
     std::vector<uint32_t> coarse_from;
     std::vector<uint32_t> moved_row;  ///< [count] row of moved or kNoReceiver; empty: nothing is moved
     std::vector<MovedPosition> moved; ///< [rows][positions_per_texel]

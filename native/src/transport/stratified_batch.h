@@ -29,7 +29,7 @@ public:
         const auto log2 = static_cast<uint32_t>(std::countr_zero(count));
         const auto nx = static_cast<float>(1u << ((log2 + 1) / 2)), ny = static_cast<float>(1u << (log2 / 2));
         const uint32_t extra = log2 & 1;
-        for (uint32_t i = 0; i < kTileReceivers; ++i) {
+        for (uint32_t i = 0; i < (tile.count + kLanes - 1) / kLanes * kLanes; ++i) {
             if (!packets.has(i)) continue;
             const uint32_t h = hash_combine(seed, i < tile.count ? receivers.texel[tile.first + i] : 0u);
             float ux[kRays], uy[kRays];
