@@ -54,6 +54,9 @@ TEST(TwinCheck, AddsTheNoiseOfTheSource) {
 
 TEST(TwinCheck, LeavesOutWhatIsNotValid) {
     EvenBake bake;
+    bake.receivers.ring.assign(kTiles, 1);
+    EXPECT_EQ(bake.calibrate(0.02, 0.0, 4.0, 0.04).factor, 1.0f);
+    bake.receivers.ring.assign(kTiles, 0);
     bake.result.inside.assign(kTiles, 1.0f);
     EXPECT_EQ(bake.calibrate(0.02, 0.0, 4.0, 0.04).factor, 1.0f);
 }

@@ -111,8 +111,9 @@ void Baker::plan_rays() {
     pool_.for_each(tiles.size(), progress_, [&](size_t i) {
         const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
         DirectGroups groups = look_around(tiles[i], seed);
+        const Tile typical = split(s_.receivers, tiles[i]).typical();
         for (uint32_t k = 0; k < kPilotParts; ++k) {
-            const Tile part = pilot_part(split(s_.receivers, tiles[i]).typical(), k);
+            const Tile part = pilot_part(typical, k);
             groups.start_at(part.first - tiles[i].first);
             mean_noise(estimate(part, small, groups, {}, seed, false), 0, part.count, pilot[i * kPilotParts + k]);
             if (is_trial(i, k))
@@ -208,12 +209,11 @@ void Baker::finish_tile(size_t i) {
     const uint32_t seed = hash_combine(settings_.seed, kSaltFinal);
     DirectGroups groups = look_around(tile, seed);
     const TileParts parts = split(s_.receivers, tile);
-    const bool spares = spares_rays(settings_);
     NoiseGoal ring = goal_;
-    if (spares) ring.target *= std::sqrt(float{kRingShare}), ring.shortage *= float{kRingShare};
+    ring.target *= std::sqrt(float{kRingShare}), ring.shortage *= float{kRingShare};
     const std::vector<FurtherRays> further = finish_part(parts.own, first_, goal_, groups, seed);
     groups.start_at(parts.ring.first - tile.first);
-    finish_part(parts.ring, spares ? ring_rays(first_) : first_, ring, groups, seed);
+    finish_part(parts.ring, spares_rays(settings_) ? ring_rays(first_) : first_, ring, groups, seed);
     const uint32_t watched = (TwinCheck::part(s_.receivers, i).first - tile.first) / kLanes;
     if (watched < further.size()) further_[i] = further[watched];
 }

@@ -13,7 +13,7 @@ inline constexpr RayPlan kFirstRays = {64, 64};
 /// pace so far.
 class GatherPace {
 public:
-    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: of the whole scene, by ray_weight().
+    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: of the whole scene, by ray_weights().
     GatherPace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<Tile> tiles, double receivers);
 
     /// Plans the gather for seconds at the pilot's speed: sets goal.shortage, and lowers the first rays if even that
@@ -39,7 +39,7 @@ private:
 /// The same for a gather that plans whole tiles before it starts.
 class TilePace {
 public:
-    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: ray_weight() of each tile. wanted: [tiles]
+    /// pilot: [tiles][kPilotParts], measured with pilot_rays. receivers: ray_weights(). wanted: [tiles]
     /// without a limit.
     TilePace(std::vector<MeasuredNoise> pilot, const RayPlan& pilot_rays, std::vector<double> receivers,
              const NoiseGoal& goal, std::vector<TilePlan> wanted);

@@ -57,6 +57,7 @@ private:
     uint32_t rays_per_door(uint32_t samples) const;
     std::vector<uint32_t> find_doors(const Tile& part, uint32_t seed) const;
     void find_aims();
+    uint32_t part_number(size_t tile, const Tile& piece) const;
     const std::vector<uint32_t>& doors_of(size_t tile, const Tile& piece) const;
     TileAims aim_at(const std::vector<uint32_t>& doors, const Tile& part, uint32_t samples) const;
     Estimate estimate(const Tile& tile, const RayPlan& plan, const DirectGroups& groups,
@@ -66,7 +67,7 @@ private:
     void gather_in_rounds(std::vector<TilePlan>& plan, const std::function<size_t(size_t)>& finish_tile);
     std::vector<struct FinalPart> finish_parts(size_t tile, const TilePlan& plan);
     void store_tile(const Tile& tile, const Estimate& estimate, struct FinalPart& out);
-    void join(std::vector<struct FinalPart>& tiles);
+    void join(std::vector<struct FinalPart>& parts);
     /// Another answer for the part of tile i that is checked.
     Estimate answer(size_t i, const TilePlan& plan, uint32_t seed) const;
     /// As in the plain bake; null also if memory does not reach.

@@ -80,16 +80,16 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
     }
 }
 
-void TermBaker::join(std::vector<FinalPart>& tiles) {
+void TermBaker::join(std::vector<FinalPart>& parts) {
     const Working here(bookkeeping_);
     TermResult& out = result_.terms;
-    for (const FinalPart& t : tiles) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
+    for (const FinalPart& t : parts) out.terms.insert(out.terms.end(), t.terms.begin(), t.terms.end());
     std::sort(out.terms.begin(), out.terms.end());
     out.terms.erase(std::unique(out.terms.begin(), out.terms.end()), out.terms.end());
     std::erase_if(out.terms, [](const Term& t) { return t.is_base(); });
     std::vector<double> kept(out.terms.size(), 0.0), dropped(out.terms.size(), 0.0);
     out.first.push_back(0);
-    for (FinalPart& t : tiles) {
+    for (FinalPart& t : parts) {
         std::vector<uint32_t> number;
         for (size_t i = 0; i < t.terms.size(); ++i) {
             number.push_back(static_cast<uint32_t>(std::lower_bound(out.terms.begin(), out.terms.end(), t.terms[i]) -
@@ -189,7 +189,7 @@ void TermBaker::final_gather(std::vector<TilePlan>& plan) {
 
 TermBaker::Estimate TermBaker::answer(size_t i, const TilePlan& plan, uint32_t seed) const {
     const Tile &tile = s_.receivers.tiles[i], part = TwinCheck::part(s_.receivers, i);
-    const RayPlan& rays = plan[part_of(split(s_.receivers, tile).own.count, part.first - tile.first)];
+    const RayPlan& rays = plan[part_number(i, part)];
     DirectGroups groups = look_around(tile, seed);
     share_samples(groups, tile, part, rays.direct);
     return estimate(part, rays, groups, doors_of(i, part), seed);

@@ -43,7 +43,6 @@ struct RowMaker::Part {
 
 ReceiverRows RowMaker::join(std::vector<Part>& parts) const {
     ReceiverRows rows;
-    rows.row_of = receivers_.coarse_from.data();
     std::vector<size_t> first_row, first_entry;
     size_t row = 0, entry = 0;
     for (const Part& p : parts) {
@@ -70,10 +69,12 @@ ReceiverRows RowMaker::join(std::vector<Part>& parts) const {
 }
 
 ReceiverRows RowMaker::receiver_rows(const Make& make) const {
-    return make_rows(receivers_.count(), [&](uint64_t row, std::vector<TermColor>& out) {
+    ReceiverRows rows = make_rows(receivers_.count(), [&](uint64_t row, std::vector<TermColor>& out) {
         const auto r = static_cast<uint32_t>(row);
         if (receivers_.coarse_from[r] == r) make(r, out);
     });
+    rows.row_of = receivers_.coarse_from.data();
+    return rows;
 }
 
 ReceiverRows RowMaker::make_rows(uint64_t count,
@@ -112,7 +113,9 @@ ReceiverRows RowMaker::merge_tiles(std::vector<TileRows>& tiles, TermTable& tabl
             t = {};
         },
         false);
-    return join(parts);
+    ReceiverRows rows = join(parts);
+    rows.row_of = receivers_.coarse_from.data();
+    return rows;
 }
 
 ReceiverRows RowMaker::add_rows(const ReceiverRows& a, const ReceiverRows& b) const {

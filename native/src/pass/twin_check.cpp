@@ -64,7 +64,7 @@ Tile TwinCheck::part(const LightmapReceivers& receivers, size_t i) {
 }
 
 void TwinCheck::compare(size_t k, uint32_t receiver, const Answers& a) {
-    if (result_.inside[receiver] > kInsideShare) return;
+    if (receivers_.ring[receiver] || result_.inside[receiver] > kInsideShare) return;
     const double scale = 0.5 * (double{a.first} + a.second) + dark_;
     if (!(scale > 0.0)) return;
     const auto half_square = [&](double d) { return std::min(0.5 * d * d / (scale * scale), 1.0); };

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/owen_sobol.h"
+#include "receiver/texel_square.h"
 
 namespace ajar {
 
@@ -27,29 +28,6 @@ uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
 /// Texels on charts, those of the ring whose 2x2 block has some on charts, and the others.
 enum class TexelKind : uint8_t { on_chart, near_chart, apart };
 
-/// Texels from low to high of a page, those of them that it has.
-struct TexelRange {
-    uint32_t x0, y0, x1, y1;
-
-    TexelRange(const Page& page, int x, int y, int edge)
-        : x0(static_cast<uint32_t>(std::max(x, 0))),
-          y0(static_cast<uint32_t>(std::max(y, 0))),
-          x1(std::min(static_cast<uint32_t>(x + edge), page.width)),
-          y1(std::min(static_cast<uint32_t>(y + edge), page.height)) {}
-
-    template <class Visit>
-    void each(const Page& page, const Visit& visit) const {
-        for (uint32_t y = y0; y < y1; ++y)
-            for (uint32_t x = x0; x < x1; ++x) visit(page.first_texel + y * page.width + x);
-    }
-};
-
-/// Where a texel lies on its page.
-std::pair<int, int> place_of(const Page& page, uint64_t texel) {
-    const auto local = static_cast<uint32_t>(texel - page.first_texel);
-    return {local % page.width, local / page.width};
-}
-
 class TexelKinds {
 public:
     TexelKinds(const Snapshot& scene, const Coverage& coverage) : scene_(scene), on_chart_(scene.texel_count(), false) {
@@ -64,7 +42,7 @@ public:
     }
 
 private:
-    bool any(const Page& page, const TexelRange& range) const {
+    bool any(const Page& page, const TexelSquare& range) const {
         bool found = false;
         range.each(page, [&](uint64_t t) { found |= on_chart_[t]; });
         return found;
@@ -85,8 +63,8 @@ struct TexelKey {
 
 TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, TexelKind kind, uint32_t first_tile) {
     const Page& page = scene.pages[page_index];
-    const auto local = static_cast<uint32_t>(texel - page.first_texel);
-    const uint32_t x = local % page.width, y = local / page.width;
+    const auto [px, py] = place_of(page, texel);
+    const auto x = static_cast<uint32_t>(px), y = static_cast<uint32_t>(py);
     const uint32_t tiles_x = (page.width + kTileEdge - 1) / kTileEdge;
     return {first_tile + (y / kTileEdge) * tiles_x + x / kTileEdge, kind,
             part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
@@ -142,6 +120,8 @@ struct Builder {
     void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
     void join_moved();
     void find_sharing(const Tile& tile);
+    Vec3 look_out(uint32_t receiver) const;
+    bool is_walled_off(uint32_t receiver, uint32_t from) const;
     uint32_t stand_in(uint32_t receiver) const;
     Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
@@ -195,9 +175,8 @@ TexelPoint Builder::point(uint32_t receiver, Vec2 u) const {
 }
 
 Vec2 Builder::texel_corner(const Fragment& f) const {
-    const Page& page = scene.pages[scene.instance_of(f.triangle).page];
-    const auto local = static_cast<uint32_t>(f.texel - page.first_texel);
-    return {local % page.width, local / page.width};
+    const auto [x, y] = place_of(scene.pages[scene.instance_of(f.triangle).page], f.texel);
+    return {x, y};
 }
 
 TexelPoint Builder::on_triangle(uint32_t triangle, const Vec2& p) const {
@@ -337,14 +316,20 @@ void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
 /// coarse light of a neighbour.
 void Builder::find_sharing(const Tile& tile) {
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
-        const Vec3 p = out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
         out.shares[r] = 1;
         out.coarse_from[r] = kind[r] == TexelKind::apart ? stand_in(r) : r;
-        for (const uint32_t q : block_of(scene, out, r)) {
-            const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
-            if (q != r && tracer.occluded({p, to, 0.0f, 1.0f}, kMaskWall)) out.shares[r] = 0;
-        }
+        for (const uint32_t q : block_of(scene, out, r))
+            if (q != r && is_walled_off(r, q)) out.shares[r] = 0;
     }
+}
+
+/// Where a receiver looks at others from, above whatever lies on the surface.
+Vec3 Builder::look_out(uint32_t r) const {
+    return out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
+}
+
+bool Builder::is_walled_off(uint32_t r, uint32_t q) const {
+    return tracer.occluded({look_out(r), look_out(q) - look_out(r), 0.0f, 1.0f}, kMaskWall);
 }
 
 /// The receiver on a chart next to one of the ring: of those that it sees the one that faces most the same way, the
@@ -352,15 +337,14 @@ void Builder::find_sharing(const Tile& tile) {
 uint32_t Builder::stand_in(uint32_t r) const {
     const Page& page = scene.pages[scene.instance_of(out.triangle[r]).page];
     const auto [x, y] = place_of(page, out.texel[r]);
-    const Vec3 p = out.shown_origin(r) + out.frame[r].z * (kSideHeight * out.texel_size[r]);
     uint32_t best = r;
     std::tuple<bool, float, float> best_rank{};
-    TexelRange(page, x - 1, y - 1, 3).each(page, [&](uint64_t t) {
+    TexelSquare(page, x - 1, y - 1, 3).each(page, [&](uint64_t t) {
         const uint32_t q = out.of_texel[t];
         if (q == kNoReceiver || kind[q] != TexelKind::on_chart) return;
-        const Vec3 to = out.shown_origin(q) + out.frame[q].z * (kSideHeight * out.texel_size[q]) - p;
-        const std::tuple rank{!tracer.occluded({p, to, 0.0f, 1.0f}, kMaskWall),
-                              std::round(8.0f * glm::dot(out.frame[q].z, out.frame[r].z)), -glm::dot(to, to)};
+        const Vec3 to = look_out(q) - look_out(r);
+        const std::tuple rank{!is_walled_off(r, q), std::round(8.0f * glm::dot(out.frame[q].z, out.frame[r].z)),
+                              -glm::dot(to, to)};
         if (best != r && rank <= best_rank) return;
         best = q, best_rank = rank;
     });
@@ -479,7 +463,7 @@ Block block_of(const Snapshot& scene, const LightmapReceivers& receivers, uint32
     const Page& page = scene.pages[scene.instance_of(receivers.triangle[r]).page];
     const auto [x, y] = place_of(page, receivers.texel[r]);
     Block block;
-    TexelRange(page, x & ~1, y & ~1, 2).each(page, [&](uint64_t t) {
+    TexelSquare(page, x & ~1, y & ~1, 2).each(page, [&](uint64_t t) {
         const uint32_t q = receivers.of_texel[t];
         if (q != kNoReceiver) block.members[block.count++] = q;
     });
