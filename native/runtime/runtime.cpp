@@ -9,11 +9,13 @@
 namespace ajar::runtime {
 namespace {
 
-/// Weights beyond these bounds are taken as off, or as the bound: sums of terms then neither
-/// overflow nor need the numbers that some processors flush to zero.
-constexpr double kFaintest = 1e-24, kBrightest = 1e30;
+/// Factors of terms whose magnitude is beyond these bounds are taken as 0, or as the bound: sums of terms then
+/// neither overflow nor need the numbers that some processors flush to zero.
+constexpr double kFaintest = 1e-24, kBrightest = 1e30, kProductLimit = 1e60;
 
-float bounded(double weight) { return weight < kFaintest ? 0.0f : static_cast<float>(std::min(weight, kBrightest)); }
+float bounded(double factor) {
+    return std::fabs(factor) < kFaintest ? 0.0f : static_cast<float>(std::clamp(factor, -kBrightest, kBrightest));
+}
 
 bool same_bits(const TermWeight& a, const TermWeight& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -122,16 +124,17 @@ void Runtime::set_color(uint32_t element, const Rgb& color) {
 /// Zero wherever a factor is zero, whatever the others are.
 TermWeight Runtime::weigh(const terms::Term& term) const {
     double r = term.scale, g = term.scale, b = term.scale;
+    const auto limited = [](double factor) { return std::clamp(factor, -kProductLimit, kProductLimit); };
     for (uint32_t i = 0; i < term.element_count; ++i) {
         const ElementState& state = elements_[term.elements[i]];
-        const double w = state.weight;
-        if (state.weight == 0.0f) return {};
-        r = state.color.r == 0.0f ? 0.0 : std::min(r * w * state.color.r, 1e60);
-        g = state.color.g == 0.0f ? 0.0 : std::min(g * w * state.color.g, 1e60);
-        b = state.color.b == 0.0f ? 0.0 : std::min(b * w * state.color.b, 1e60);
+        const double x = terms::element_variable(file_->elements()[term.elements[i]], state.weight);
+        if (x == 0.0) return {};
+        r = state.color.r == 0.0f ? 0.0 : limited(r * x * state.color.r);
+        g = state.color.g == 0.0f ? 0.0 : limited(g * x * state.color.g);
+        b = state.color.b == 0.0f ? 0.0 : limited(b * x * state.color.b);
     }
     const TermWeight out{bounded(r), bounded(g), bounded(b), 0.0f};
-    return {out.r, out.g, out.b, out.r > 0.0f || out.g > 0.0f || out.b > 0.0f ? 1.0f : 0.0f};
+    return {out.r, out.g, out.b, out.r != 0.0f || out.g != 0.0f || out.b != 0.0f ? 1.0f : 0.0f};
 }
 
 void Runtime::collect_changes() {

@@ -5,9 +5,10 @@
 //
 // All numbers are little endian. The file is a Header, then its sections in any order, each aligned
 // to 16 bytes. A term is a product of elements with the light it carries at the texels that keep
-// it. A receiver is a texel that some term reaches; a dispatch is a run of receivers on one page
-// that are updated together. Every receiver is in exactly one dispatch, which holds its base light
-// too: the sum of base and terms needs nothing but the dispatch.
+// it; what each element multiplies it by is element_variable(). The base is the light while all
+// variables are 0: light sets off, doors and toggles as at the start. A receiver is a texel that some term reaches; a
+// dispatch is a run of receivers on one page that are updated together. Every receiver is in exactly one dispatch,
+// which holds its base light too: the sum of base and terms needs nothing but the dispatch.
 //
 // Data of a dispatch, all offsets in 32 bit words of the data section:
 //   address  [receivers]      y << 16 | x, row 0 is the top row, as in the page's DDS files
@@ -57,6 +58,13 @@ struct Element {
     float weight;                    ///< at the start
 };
 static_assert(sizeof(Element) == 16);
+
+/// What an element at a weight multiplies the light of its terms by. Of a light set it is the weight. Of a door or
+/// toggle it is the distance from the weight at the start: 1 - weight if it starts at 1, else weight - start.
+inline double element_variable(const Element& e, double weight) {
+    if (e.kind == static_cast<uint32_t>(Kind::light_set)) return weight;
+    return e.weight == 1.0f ? 1.0 - weight : weight - e.weight;
+}
 
 /// Size of a page, and the checksums of its two DDS files.
 struct Page {

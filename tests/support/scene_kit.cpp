@@ -217,12 +217,13 @@ uint32_t Scene::point_light(Float3 p, float watts, float radius, bool primary) {
     return light(d, translation(p[0], p[1], p[2]).data());
 }
 
-uint32_t Scene::element(uint32_t kind, const std::string& name, bool bounces) {
+uint32_t Scene::element(uint32_t kind, const std::string& name, bool bounces, float weight) {
     ajar_element_desc d;
     ajar_element_desc_init(&d);
     d.name = name.c_str();
     d.kind = kind;
     d.bounce = bounces;
+    d.weight = weight;
     uint32_t id = 0;
     check(ajar_scene_add_element(scene_, &d, &id));
     return id;

@@ -53,8 +53,8 @@ public:
                       const double* transform = nullptr);
     uint32_t light(ajar_light_desc desc, const double* transform);
     uint32_t point_light(Float3 position, float watts, float radius = 0.0f, bool primary = false);
-    /// kind: AJAR_ELEMENT_*.
-    uint32_t element(uint32_t kind, const std::string& name, bool bounces = true);
+    /// kind: AJAR_ELEMENT_*; weight: at the start.
+    uint32_t element(uint32_t kind, const std::string& name, bool bounces = true, float weight = 1.0f);
     /// Elements that the next instances and lights belong to; AJAR_NONE for none.
     uint32_t current_switch = AJAR_NONE, current_set = AJAR_NONE;
     bool open_pose = false;

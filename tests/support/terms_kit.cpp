@@ -63,7 +63,7 @@ void fill_everything(TermScene& scene) {
     const uint32_t texels = 64 * 48 + 40 * 30;
     const char* const kinds[] = {"light_set", "light_set", "door", "toggle"};
     for (uint32_t e = 0; e < 20; ++e)
-        scene.add_element("element " + std::to_string(e), kinds[e % 4], e % 3 == 0 ? 1.0f : 0.0f);
+        scene.add_element("element " + std::to_string(e), kinds[e % 4], e % 3 == 0 ? 1.0f : e == 10 ? 0.25f : 0.0f);
     scene.add_term({0}, texel_range(0, 3000)); // large lists of their own
     scene.add_term({2}, texel_range(500, 2500), true);
     scene.add_term({0, 2}, texel_range(1000, 1500), true, 0.2f);
@@ -183,6 +183,11 @@ void Decoder::dispatch(uint32_t index) {
 }
 
 } // namespace
+
+double variable_of(bool is_light_set, double start, double weight) {
+    if (is_light_set) return weight;
+    return start < 1.0 ? weight - start : start - weight;
+}
 
 DecodedTerms decode_terms(const std::vector<uint8_t>& bytes) {
     Decoder decoder{bytes, {}, {}};

@@ -75,6 +75,10 @@ struct DecodedTerms {
     std::map<uint32_t, DecodedReceiver> receivers; ///< by texel over all pages, bottom row first
 };
 
+/// What a term's light is multiplied by for one of its elements, from the format's description: of a light set its
+/// weight, of a door or toggle its distance from the start.
+double variable_of(bool is_light_set, double start, double weight);
+
 /// Throws std::runtime_error where two receivers have one address or the file is not whole.
 DecodedTerms decode_terms(const std::vector<uint8_t>& bytes);
 

@@ -66,7 +66,8 @@ std::vector<Vec3> from_terms(const PackageContent& content, uint32_t light, cons
     for (const PackageTerm& t : content.terms) {
         const uint32_t set = t.elements[0] < 2 ? t.elements[0] : kNone;
         float w = set == light ? 1.0f : 0.0f;
-        for (const uint32_t e : t.elements) w *= e < 2 ? 1.0f : weight[e];
+        for (const uint32_t e : t.elements)
+            w *= e < 2 ? 1.0f : static_cast<float>(kit::variable_of(false, content.elements[e].weight, weight[e]));
         for (size_t i = 0; i < t.texel.size(); ++i)
             out[t.texel[i]] += w * Vec3(t.irradiance[3 * i], t.irradiance[3 * i + 1], t.irradiance[3 * i + 2]);
     }

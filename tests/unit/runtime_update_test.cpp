@@ -75,6 +75,10 @@ protected:
         const uint32_t w = terms_.pages[page].width;
         return {page, size_t{terms_.pages[page].height - 1 - texel / w} * w + texel % w};
     }
+    double variable(uint32_t element, double weight) const {
+        const terms::Element& e = terms_.elements[element];
+        return kit::variable_of(e.kind == static_cast<uint32_t>(terms::Kind::light_set), e.weight, weight);
+    }
     State expected(const kit::DecodedReceiver& r, const kit::Runtime& runtime) const {
         State s;
         const Vec3 base = unpack_r11g11b10f(r.irradiance);
@@ -84,7 +88,7 @@ protected:
             const terms::Term& term = terms_.terms[entry.term];
             for (uint32_t i = 0; i < term.element_count; ++i) {
                 const ajar_runtime_element e = runtime.element(term.elements[i]);
-                for (int c = 0; c < 3; ++c) light[c] *= double(e.weight) * double(e.color[c]);
+                for (int c = 0; c < 3; ++c) light[c] *= variable(term.elements[i], e.weight) * double(e.color[c]);
             }
             s.add(light, entry.direction);
         }
@@ -94,7 +98,7 @@ protected:
         return std::any_of(r.entries.begin(), r.entries.end(), [&](const kit::DecodedEntry& entry) {
             const terms::Term& t = terms_.terms[entry.term];
             return std::all_of(t.elements, t.elements + t.element_count,
-                               [&](uint32_t e) { return runtime.element(e).weight > 0; });
+                               [&](uint32_t e) { return variable(e, runtime.element(e).weight) != 0.0; });
         });
     }
     void expect_sums(const kit::Runtime& runtime) const {
@@ -171,12 +175,15 @@ TEST_F(RuntimeUpdate, EachElementAlone) {
     }
 }
 
-TEST_F(RuntimeUpdate, AllOffIsTheBaseToTheBit) {
+TEST_F(RuntimeUpdate, SetsOffAndTheRestAsAtTheStartIsTheBaseToTheBit) {
     kit::Runtime runtime(folder_->path());
-    runtime.set_all(1.0f);
-    runtime.update();
-    EXPECT_NE(runtime.pages(), base_pages(scene_));
-    runtime.set_all(0.0f);
+    for (const float weight : {1.0f, 0.0f}) {
+        runtime.set_all(weight);
+        runtime.update();
+        EXPECT_NE(runtime.pages(), base_pages(scene_));
+    }
+    for (uint32_t e = 0; e < runtime.element_count(); ++e)
+        runtime.set_weight(e, runtime.element(e).kind == AJAR_RUNTIME_LIGHT_SET ? 0.0f : terms_.elements[e].weight);
     runtime.update();
     EXPECT_EQ(runtime.pages(), base_pages(scene_));
 }
@@ -255,10 +262,11 @@ TEST_F(RuntimeUpdate, OnlyWhatAChangeReachesRuns) {
         runtime.set_weight(e, runtime.element(e).weight); // no change
         const ajar_runtime_stats none = runtime.update();
         EXPECT_EQ(none.dispatches + none.texels + none.pages, 0u);
-        for (uint32_t other = 0; other < 20; ++other) runtime.set_weight(other, 1.0f); // products are on
+        for (uint32_t other = 0; other < 20; ++other) // products are on
+            runtime.set_weight(other, variable(other, 1.0) != 0.0 ? 1.0f : 0.0f);
         runtime.update();
         const std::vector<kit::PageWords> before = runtime.pages();
-        runtime.set_weight(e, 0.25f);
+        runtime.set_weight(e, 0.75f);
         const ajar_runtime_stats stats = runtime.update();
         EXPECT_EQ(stats.dispatches, runtime.element(e).dispatches);
         EXPECT_EQ(stats.texels, runtime.element(e).texels);
@@ -311,6 +319,7 @@ TEST(RuntimeLight, TakenAwayBelowZeroIsBlack) {
                    std::vector<uint32_t>(16, pack_direction({})), true);
     kit::PackageFolder folder(scene);
     kit::Runtime runtime(folder.path());
+    runtime.set_weight(0, 0.0f);
     runtime.update();
     EXPECT_EQ(runtime.page(0).irradiance, std::vector<uint32_t>(16, 0));
     EXPECT_EQ(runtime.page(0).direction, std::vector<uint32_t>(16, pack_direction({})));

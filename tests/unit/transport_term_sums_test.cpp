@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr uint32_t kSet = 0, kDoor = 1, kToggle = 2, kLane = 9;
+constexpr uint32_t kSet = 0, kDoor = 1, kToggle = 2, kLane = 9, kOrder = 4;
 const Vec3 kUp(0.0f, 0.0f, 1.0f);
 
 const auto keep_all = [](const Term&) { return true; };
@@ -20,7 +20,8 @@ Term product(uint32_t set, std::initializer_list<uint32_t> switches) {
 
 /// A table that knows the set and its product with the door.
 struct Known : ::testing::Test {
-    TermTable table;
+    std::vector<Element> elements = std::vector<Element>(8);
+    TermTable table{elements};
     uint32_t set, with_door;
 
     Known() {
@@ -40,23 +41,32 @@ TEST(Term, OfAnotherSetHasTheSameSwitches) {
 
 TEST_F(TermSumsTest, ProductsAreThoseOfTheTerms) {
     TermSums sums(table);
-    const uint32_t lamp = sums.slot_of(set), door = sums.times(lamp, kDoor, keep_all);
+    const uint32_t lamp = sums.slot_of(set), door = sums.times(lamp, kDoor, kOrder, keep_all);
     EXPECT_EQ(door, sums.slot_of(with_door));
-    EXPECT_EQ(sums.times(lamp, kDoor, keep_all), door);
-    EXPECT_EQ(sums.times(door, kDoor, keep_all), door) << "a weight times itself is the weight";
-    const uint32_t both = sums.times(door, kToggle, keep_all);
+    EXPECT_EQ(sums.times(lamp, kDoor, kOrder, keep_all), door);
+    EXPECT_EQ(sums.times(door, kDoor, kOrder, keep_all), door) << "a presence times itself is the presence";
+    const uint32_t both = sums.times(door, kToggle, kOrder, keep_all);
     EXPECT_EQ(sums.term(both), product(kSet, {kDoor, kToggle}));
-    EXPECT_EQ(sums.times(sums.times(lamp, kToggle, keep_all), kDoor, keep_all), both) << "in any order";
+    EXPECT_EQ(sums.times(sums.times(lamp, kToggle, kOrder, keep_all), kDoor, kOrder, keep_all), both) << "in any order";
 }
 
 TEST_F(TermSumsTest, ProductsThatAreNotKeptHaveNoSlot) {
     TermSums sums(table);
     const uint32_t before = sums.slots() + 1, lamp = sums.slot_of(set);
-    EXPECT_EQ(sums.times(lamp, kDoor, [](const Term& t) { return t.order() < 2; }), TermSums::kNone);
+    EXPECT_EQ(sums.times(lamp, kDoor, kOrder, [](const Term& t) { return t.order() < 2; }), TermSums::kNone);
     EXPECT_EQ(sums.slots(), before);
     const uint32_t full = sums.slot_of(product(kSet, {3, 4, 5}));
-    EXPECT_EQ(sums.times(full, kDoor, keep_all), TermSums::kNone) << "three doors and toggles are the most";
-    EXPECT_EQ(sums.times(full, 4, keep_all), full);
+    EXPECT_EQ(sums.times(full, kDoor, kOrder, keep_all), TermSums::kCut) << "four elements are the most";
+    EXPECT_EQ(sums.times(full, 4, kOrder, keep_all), full);
+}
+
+TEST_F(TermSumsTest, CutLightIsBookedWithItsSample) {
+    TermSums sums(table);
+    sums.cut(kDoor, Vec3(-2.0f));
+    sums.end_sample(kLane, 0, Vec3(0.6f, 0.0f, 0.8f), 3.0f);
+    ASSERT_EQ(sums.cuts().size(), 1u);
+    EXPECT_NEAR(sums.cuts().at(kDoor), 2.0 * 3.0 * 0.8, 1e-5);
+    EXPECT_EQ(sums.kept(), 0.0);
 }
 
 TEST_F(TermSumsTest, LightArrivesAtItsLaneAlone) {

@@ -251,7 +251,7 @@ AJAR_API ajar_result ajar_scene_warning(ajar_scene scene, uint32_t index, char* 
 
 /* Which products of elements are baked beside the single ones. */
 enum { AJAR_COMBINATIONS_NONE = 0, AJAR_COMBINATIONS_AUTO = 1, AJAR_COMBINATIONS_ALL = 2 };
-#define AJAR_MAX_TERM_ELEMENTS 4u
+#define AJAR_MAX_TERM_ELEMENTS 8u
 
 /* Whether the package also holds plain textures to blend, after "Semi-Dynamic Light Maps": a map per
  * light and per object that shadows it, cut into patches in RGBA16F atlases (patches.json). MONO: the
@@ -345,7 +345,9 @@ AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t l
                                          uint64_t float_count);
 /* One term of the baked light, a product of elements (algorithms in Seyb et al. 2020, "The Design
  * and Evolution of the UberBake Light Baking System"): light at any texel is the sum over terms of
- * irradiance times the weights of the term's elements. Term 0 is the base, the product of none. */
+ * irradiance times the weights of the term's elements. Term 0 is the product of none: the light with
+ * all weights at 0. The bake and the package hold the same polynomial expanded around the weights at
+ * the start, which makes that state exact; here it is multiplied out. */
 typedef struct ajar_term_info {
     uint32_t struct_size;
     uint32_t element_count;

@@ -12,11 +12,12 @@
  *     ajar_runtime_release(&light);
  *
  * Conventions
- *   Light      of a texel is base + sum over terms of (product of the weights of the term's
- *              elements) * light of the term. An update computes the texels that a change reaches
- *              anew from the base: the result depends on the weights alone, not on how they came
- *              about, and is the same to the bit on every machine.
- *   Rows       pages have their top row first, as their DDS files do; where a function says
+ *   Light      of a texel is base + sum over terms of (product of the variables of the term's
+ *              elements) * light of the term. The variable of a light set is its weight, that of a
+ *              door or toggle its distance from the weight that it starts with: the base is the
+ *              light with all sets off and doors and toggles as they start. An update computes the texels that a change
+ * reaches anew from the base: the result depends on the weights alone, not on how they came about, and is the same to
+ * the bit on every machine. Rows       pages have their top row first, as their DDS files do; where a function says
  *              otherwise, it says so.
  *   Errors     each fallible function returns an ajar_runtime_result (0 = success). The message of
  *              the last failure on this thread is valid until the next call on it.

@@ -75,29 +75,45 @@ void copy_packed(const BakedPages& b, const Page& page, float* out) {
     }
 }
 
-void fill_term(const Job& job, uint32_t index, ajar_term_info& out) {
-    const BakedPages& b = job.output().pages;
-    if (index > b.terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
-    init_struct(&out);
-    if (index == 0) {
-        out.texel_count = job.output().receivers.count();
-        return;
-    }
-    const BakedTerm& t = b.terms[index - 1];
-    out.element_count = static_cast<uint32_t>(t.elements.size());
-    std::copy(t.elements.begin(), t.elements.end(), out.elements);
-    out.is_signed = t.is_signed;
-    out.texel_count = t.texel.size();
-    out.relative_error = t.relative_error;
-    out.discarded = t.discarded;
+const WeightTerm& find_term(const Job& job, uint32_t index) {
+    const auto& terms = job.output().weight_terms;
+    if (index >= terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
+    return terms[index];
 }
 
-void copy_term(const BakedTerm& term, const Page& page, float* out) {
+/// Of the term with the same elements; a product that the weights alone bring about has no noise of its own.
+void fill_term(const Job& job, uint32_t index, ajar_term_info& out) {
+    const WeightTerm& term = find_term(job, index);
+    init_struct(&out);
+    out.element_count = static_cast<uint32_t>(term.elements.size());
+    std::copy(term.elements.begin(), term.elements.end(), out.elements);
+    std::vector<uint32_t> texels, sum;
+    for (const WeightTerm::Part& part : term.parts) {
+        if (part.term == WeightTerm::kBase) continue;
+        const BakedTerm& t = job.output().pages.terms[part.term];
+        sum.clear();
+        std::set_union(texels.begin(), texels.end(), t.texel.begin(), t.texel.end(), std::back_inserter(sum));
+        texels.swap(sum);
+        out.is_signed |= t.is_signed || part.factor < 0.0f;
+        if (t.elements == term.elements) out.relative_error = t.relative_error, out.discarded = t.discarded;
+    }
+    out.texel_count = index == 0 ? job.output().receivers.count() : texels.size();
+    if (index == 0) out.is_signed = 0;
+}
+
+/// Adds what a part of a term brings to a page.
+void add_part(const BakedPages& pages, const WeightTerm::Part& part, const Page& page, float* out) {
     const uint64_t texels = uint64_t{page.width} * page.height;
-    std::memset(out, 0, 3 * texels * sizeof(float));
+    const auto add = [&](uint64_t local, const Vec3& e) {
+        for (int c = 0; c < 3; ++c) out[3 * local + static_cast<uint64_t>(c)] += part.factor * e[c];
+    };
+    if (part.term == WeightTerm::kBase) {
+        for (uint64_t i = 0; i < texels; ++i) add(i, pages.irradiance[page.first_texel + i]);
+        return;
+    }
+    const BakedTerm& term = pages.terms[part.term];
     for (size_t i = 0; i < term.texel.size(); ++i)
-        if (const uint64_t local = term.texel[i] - page.first_texel; local < texels)
-            std::memcpy(out + 3 * local, &term.irradiance[i], sizeof(Vec3));
+        if (const uint64_t local = term.texel[i] - page.first_texel; local < texels) add(local, term.irradiance[i]);
 }
 
 } // namespace
@@ -197,7 +213,7 @@ AJAR_API ajar_result ajar_job_read_layer(ajar_job job, uint32_t page, uint32_t l
 AJAR_API ajar_result ajar_job_term_count(ajar_job job, uint32_t* out) {
     return guarded([&] {
         const auto j = jobs().get(job);
-        required(out) = static_cast<uint32_t>(j->output().pages.terms.size()) + 1;
+        required(out) = static_cast<uint32_t>(j->output().weight_terms.size());
         return AJAR_OK;
     });
 }
@@ -215,16 +231,13 @@ AJAR_API ajar_result ajar_job_read_term(ajar_job job, uint32_t term, uint32_t pa
                                         uint64_t float_count) {
     return guarded([&] {
         const auto j = jobs().get(job);
-        const BakedPages& b = j->output().pages;
+        const WeightTerm& t = find_term(*j, term);
         const Page& p = find_page(*j, page);
         const uint64_t needed = uint64_t{3} * p.width * p.height;
-        if (term > b.terms.size()) throw Error(AJAR_ERROR_ARGUMENT, "the bake has no such term");
         if (buffer == nullptr || float_count < needed)
             throw Error(AJAR_ERROR_BUFFER, "the buffer holds fewer floats than the page");
-        if (term == 0)
-            std::memcpy(buffer, &b.irradiance[p.first_texel], needed * sizeof(float));
-        else
-            copy_term(b.terms[term - 1], p, buffer);
+        std::fill(buffer, buffer + needed, 0.0f);
+        for (const WeightTerm::Part& part : t.parts) add_part(j->output().pages, part, p, buffer);
         return AJAR_OK;
     });
 }

@@ -81,6 +81,9 @@ void Job::bake(Progress& progress) {
     if (settings_.trial != 0) return predict(tracer, pool, progress, store);
     progress.begin_stage(AJAR_STAGE_POST, 0.97f);
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
+    std::vector<std::vector<uint32_t>> products;
+    for (const BakedTerm& t : output_.pages.terms) products.push_back(t.elements);
+    output_.weight_terms = in_weights(package_content(scene, output_.pages).elements, products);
     warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
     if (settings_.check_points == 0) return;
     output_.check =

@@ -8,12 +8,14 @@
 #include "api/self_check.h"
 #include "api/task.h"
 #include "base/work_clock.h"
+#include "package/weight_polynomial.h"
 
 namespace ajar {
 
 /// What a finished job knows, for results and report.
 struct JobOutput {
     BakedPages pages;
+    std::vector<WeightTerm> weight_terms; ///< the terms that callers read
     LightmapReceivers receivers;
     BakeResult bake;
     std::vector<Warning> warnings;

@@ -17,12 +17,15 @@ constexpr double kMostBias = 0.05; ///< of all light
 constexpr double kMostFar = 0.1;   ///< share of points
 constexpr double kMostGain = 1.0;
 
-/// Light of all terms with every weight at 1.
-Vec3 all_on(const BakedPages& pages, uint32_t texel) {
+/// Light with every weight at 1.
+Vec3 all_on(const Snapshot& scene, const BakedPages& pages, uint32_t texel) {
     Vec3 sum = pages.irradiance[texel];
     for (const BakedTerm& t : pages.terms) {
         const auto at = std::lower_bound(t.texel.begin(), t.texel.end(), texel);
-        if (at != t.texel.end() && *at == texel) sum += t.irradiance[static_cast<size_t>(at - t.texel.begin())];
+        if (at == t.texel.end() || *at != texel) continue;
+        float factor = 1.0f;
+        for (const uint32_t e : t.elements) factor *= scene.elements[e].variable(1.0f);
+        sum += factor * t.irradiance[static_cast<size_t>(at - t.texel.begin())];
     }
     return sum;
 }
@@ -76,7 +79,7 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const Lightmap
         const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
         if (pages.validity[texel] != 1.0f) continue;
         const float error = bake.all_on_error()[receivers.of_texel[texel]];
-        points.push_back({luminance(all_on(pages, texel)), error, luminance(v.irradiance), v.standard_error});
+        points.push_back({luminance(all_on(scene, pages, texel)), error, luminance(v.irradiance), v.standard_error});
     }
     compare_points(points, check);
     // The first step may grow: direct light can fall where no lightmap is.

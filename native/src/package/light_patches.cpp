@@ -8,6 +8,7 @@
 #include "base/math.h"
 #include "encode/ahd.h"
 #include "package/dispatch_plan.h"
+#include "package/weight_polynomial.h"
 
 namespace ajar {
 namespace {
@@ -43,8 +44,8 @@ struct MapKey {
 struct Parts {
     uint32_t light = LightPatches::kNone;
     std::vector<uint32_t> doors, toggles;
-    Parts(const PackageContent& content, const PackageTerm& term) {
-        for (const uint32_t e : term.elements) {
+    Parts(const PackageContent& content, const std::vector<uint32_t>& elements) {
+        for (const uint32_t e : elements) {
             if (content.elements[e].kind == "light_set")
                 light = e;
             else
@@ -56,28 +57,28 @@ struct Parts {
 class MapMaker {
 public:
     explicit MapMaker(const PackageContent& content) : content_(content) {
-        add_pages();
-        for (const PackageTerm& term : content.terms) add_term(term);
+        std::vector<std::vector<uint32_t>> products;
+        for (const PackageTerm& term : content.terms) products.push_back(term.elements);
+        for (const WeightTerm& term : in_weights(content.elements, products)) add_term(term);
         for (auto& [key, light] : maps) merge(light);
     }
     std::map<MapKey, MapLight> maps;
     uint64_t dropped_terms = 0;
 
 private:
-    void add_pages() {
-        MapLight& base = maps[{LightPatches::kNone, LightPatches::kNone}];
+    void add_pages(MapLight& map, float factor) {
         uint32_t texel = 0;
         for (const PackagePage& page : content_.pages)
             for (size_t i = 0; i < page.irradiance.size(); i += 3, ++texel) {
                 const Vec3 e(page.irradiance[i], page.irradiance[i + 1], page.irradiance[i + 2]);
-                if (e != Vec3(0.0f)) base.push_back({texel, e});
+                if (e != Vec3(0.0f)) map.push_back({texel, factor * e});
             }
     }
     /// With every door open and every toggle away, terms of doors alone are light that is there. A
     /// door that closes takes the terms that it is part of; a toggle that comes takes, negated, its
     /// own. Terms of two toggles have no place.
-    void add_term(const PackageTerm& term) {
-        const Parts parts(content_, term);
+    void add_term(const WeightTerm& term) {
+        const Parts parts(content_, term.elements);
         if (parts.toggles.empty()) {
             add(term, {parts.light, LightPatches::kNone}, 1.0f);
             for (const uint32_t door : parts.doors) add(term, {parts.light, door}, 1.0f);
@@ -86,11 +87,19 @@ private:
         }
         dropped_terms += parts.toggles.size() + parts.doors.size() > 1;
     }
-    void add(const PackageTerm& term, MapKey key, float sign) {
+    void add(const WeightTerm& light, MapKey key, float sign) {
         MapLight& map = maps[key];
-        for (size_t i = 0; i < term.texel.size(); ++i)
-            map.push_back({term.texel[i], sign * Vec3(term.irradiance[3 * i], term.irradiance[3 * i + 1],
-                                                      term.irradiance[3 * i + 2])});
+        for (const WeightTerm::Part& part : light.parts) {
+            if (part.term == WeightTerm::kBase) {
+                add_pages(map, sign * part.factor);
+                continue;
+            }
+            const PackageTerm& term = content_.terms[part.term];
+            for (size_t i = 0; i < term.texel.size(); ++i)
+                map.push_back({term.texel[i], sign * part.factor *
+                                                  Vec3(term.irradiance[3 * i], term.irradiance[3 * i + 1],
+                                                       term.irradiance[3 * i + 2])});
+        }
     }
     const PackageContent& content_;
 };

@@ -174,6 +174,18 @@ Json parse_extras(const std::string& text) {
 
 } // namespace
 
+uint32_t element_kind(const PackageElement& element) {
+    if (element.kind == "light_set") return static_cast<uint32_t>(terms::Kind::light_set);
+    if (element.kind == "door") return static_cast<uint32_t>(terms::Kind::door);
+    if (element.kind == "toggle") return static_cast<uint32_t>(terms::Kind::toggle);
+    throw Error(AJAR_ERROR_ARGUMENT, "An element of the package is of unknown kind \"" + element.kind + "\"",
+                element.name);
+}
+
+float PackageElement::variable(float w) const {
+    return static_cast<float>(terms::element_variable({0, 0, element_kind(*this), weight}, w));
+}
+
 PageFiles::PageFiles(size_t page) {
     const std::string stem = "page_" + std::to_string(page);
     irradiance = stem + ".irradiance.exr";

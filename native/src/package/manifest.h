@@ -41,7 +41,12 @@ struct PackageElement {
     std::string name;
     std::string kind;    ///< "light_set", "door" or "toggle"
     float weight = 1.0f; ///< at the start
+
+    /// What the element multiplies the light of its terms by at weight w (terms::element_variable).
+    float variable(float w) const;
 };
+/// terms::Kind as a number. Throws Error(AJAR_ERROR_ARGUMENT) if it is none.
+uint32_t element_kind(const PackageElement& element);
 
 /// Baked light of a product of elements, at the texels that keep it. The base is no term here: the
 /// pages hold it. Arrays stay owned by the caller while the package is written.

@@ -59,18 +59,11 @@ private:
     TermsSummary summary_;
 };
 
-uint32_t kind_number(const std::string& kind) {
-    if (kind == "light_set") return static_cast<uint32_t>(terms::Kind::light_set);
-    if (kind == "door") return static_cast<uint32_t>(terms::Kind::door);
-    if (kind == "toggle") return static_cast<uint32_t>(terms::Kind::toggle);
-    throw Error(AJAR_ERROR_ARGUMENT, "An element of the package is of unknown kind \"" + kind + "\"");
-}
-
 void Builder::add_names() {
     for (const PackageElement& e : content_.elements) {
         const auto offset = static_cast<uint32_t>(out_.strings.size());
         out_.strings.insert(out_.strings.end(), e.name.begin(), e.name.end());
-        out_.elements.push_back({offset, static_cast<uint32_t>(e.name.size()), kind_number(e.kind), e.weight});
+        out_.elements.push_back({offset, static_cast<uint32_t>(e.name.size()), element_kind(e), e.weight});
     }
 }
 

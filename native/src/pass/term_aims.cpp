@@ -37,7 +37,7 @@ TileAims::Arrival TermBaker::arrival(const Ray& ray, const Hit& hit) const {
 float TermBaker::indirect_light(const Tile& tile) const {
     double sum = 0.0;
     for (uint32_t r = tile.first; r < tile.first + tile.count; ++r)
-        sum += luminance(source_.total(r) - direct_.total(r));
+        sum += luminance(source_.total(table_, r) - direct_.total(table_, r));
     return static_cast<float>(std::max(sum, 0.0) / tile.count);
 }
 

@@ -9,7 +9,9 @@ namespace {
 
 constexpr uint64_t kRowCopies = 5;     ///< of a pass's rows: per tile, joined, added to the source, parts of that
 constexpr uint32_t kUnseenSamples = 1; ///< per receiver that look for a light set no visibility ray met
-constexpr uint32_t kAutoOrder = 3, kAllOrder = 4;
+constexpr uint32_t kAutoOrder = 3, kAllOrder = 4, kMostOrder = kTermSwitches + 1;
+/// Of a tile's light: where more is cut because it depends on more elements than a term there may have, terms get more.
+constexpr double kCutShare = 0.02;
 /// Shares of a term's threshold: light that is dimmer is reflected only by chance, in the bounces, whose noise many
 /// rays average later, and in the final gather.
 constexpr float kBouncePrune = 16.0f, kFinalPrune = 4.0f;
@@ -29,7 +31,8 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       seconds_to_store_(seconds_to_store),
       has_primary_(
           std::any_of(scene.scene.lights.begin(), scene.scene.lights.end(), [](const Light& l) { return l.primary; })),
-      limits_{order_of(settings.combinations)},
+      order_(s_.receivers.tiles.size(), order_of(settings.combinations)),
+      table_(scene.scene.elements),
       bookkeeping_(bookkeeping_effect(scene.scene.elements)),
       rows_(pool, progress, s_.receivers),
       budget_(settings.memory_limit, "light sets, doors and toggles", scene.scene.name) {
@@ -40,6 +43,33 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
 
 bool TermBaker::gathers() const {
     return settings_.bounces > 0 || s_.scene.sky.lit() || s_.emitters.emissive_triangles() > 0;
+}
+
+/// Number of the tile that a part lies in.
+size_t TermBaker::tile_of(const Tile& part) const {
+    const std::vector<Tile>& tiles = s_.receivers.tiles;
+    const auto after = std::upper_bound(tiles.begin(), tiles.end(), part.first,
+                                        [](uint32_t first, const Tile& t) { return first < t.first; });
+    return static_cast<size_t>(after - tiles.begin()) - 1;
+}
+
+TermLimits TermBaker::limits_at(const Tile& part) const { return {guide().order_[tile_of(part)]}; }
+
+/// Lets terms at a tile have one element more if too much light was cut; whether they may. rays: of gather.
+bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t rays, const TermSums* direct) {
+    const uint32_t order = limits_at(part).order;
+    if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
+    double cut = 0.0, kept = 0.0;
+    const auto add = [&](const TermSums& sums, double scale) {
+        if (sums.cuts().empty()) return;
+        for (const auto& [element, light] : sums.cuts()) cut += light * scale;
+        kept += sums.kept() * scale;
+    };
+    add(gather, 1.0 / std::max(rays, 1u));
+    if (direct != nullptr) add(*direct, 1.0);
+    if (cut <= kCutShare * (cut + kept)) return false;
+    order_[tile_of(part)] = order + 1;
+    return true;
 }
 
 TileRows TermBaker::tile_rows(const Tile& tile, const TermSums& gather, const TermSums* direct) {
@@ -81,7 +111,7 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     current_ = rows_.merge_tiles(tiles, table_);
     if (first_ != nullptr) current_ = sets_as_one(current_);
     double sum = 0.0;
-    for (const TermColor& e : current_.entries) sum += luminance(e.color);
+    for (const TermColor& e : current_.entries) sum += luminance(e.color) * table_.all_on(e.term);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(gathering_)));
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
@@ -145,13 +175,17 @@ void TermBaker::direct_source() {
             DirectGroups groups(s_.emitters, LightRoles::all, first_ != nullptr ? first_->sets_of(tile) : all_sets_);
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
-            TermSums direct(table_), gather(table_);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
-            rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr,
-                                  limits_, direct);
-            if (rays_needed)
-                rays += gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, limits_, gather);
-            tiles[i] = tile_rows(tile, gather, &direct);
+            for (bool again = true; again;) {
+                TermSums direct(table_), gather(table_);
+                const TermLimits limits = limits_at(tile);
+                rays += sample_direct(s_, groups, tile, {static_cast<float>(gather_rays), 1.0f}, seed, true, nullptr,
+                                      limits, direct);
+                if (rays_needed)
+                    rays += gather_tile(s_, tile, source_options(settings_, groups, seed), nullptr, limits, gather);
+                again = raise_order(tile, gather, gather_rays, &direct);
+                if (!again) tiles[i] = tile_rows(tile, gather, &direct);
+            }
             progress_.add_rays(rays);
         },
         first_ == nullptr);
@@ -174,7 +208,8 @@ void TermBaker::bounce(uint32_t index) {
             aimed_[index - 1][i] = first_ != nullptr ? first_->aimed_[index - 1][i] : find_doors(tile, o.seed);
             const TileAims aims = aim_at(aimed_[index - 1][i], tile, o.samples);
             o.aims = aims.empty() ? nullptr : &aims;
-            progress_.add_rays(gather_tile(s_, tile, o, &radiance_, limits_, sums));
+            progress_.add_rays(gather_tile(s_, tile, o, &radiance_, limits_at(tile), sums));
+            raise_order(tile, sums, o.samples, nullptr);
             tiles[i] = tile_rows(tile, sums, nullptr);
         },
         first_ == nullptr);
@@ -186,10 +221,10 @@ EmitterSet TermBaker::find_bright_texels() {
     if (settings_.bounces > 0) {
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r)
-            level[r] = luminance(source_.total(r) * s_.receivers.albedo[r]) * kInvPi;
+            level[r] = luminance(source_.total(table_, r) * s_.receivers.albedo[r]) * kInvPi;
         for (const uint32_t r : bright_receivers(s_.receivers, level)) {
             bright.push_back(bright_texel(s_.scene, s_.receivers, r));
-            bright.back().radiance = source_.total(r) * s_.receivers.albedo[r] * kInvPi;
+            bright.back().radiance = source_.total(table_, r) * s_.receivers.albedo[r] * kInvPi;
             radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;
         }
     }
@@ -262,7 +297,7 @@ BakeResult TermBaker::run() {
     if (settings_.trial != 0) return std::move(result_);
     calibrate_error(plan);
     result_.source.reserve(s_.receivers.count());
-    for (uint32_t r = 0; r < s_.receivers.count(); ++r) result_.source.push_back(source_.total(r));
+    for (uint32_t r = 0; r < s_.receivers.count(); ++r) result_.source.push_back(source_.total(table_, r));
     return std::move(result_);
 }
 

@@ -34,6 +34,9 @@ private:
     void take(std::vector<TileRows>& tiles);
     /// Rows with one light set in place of all that combine alike.
     ReceiverRows sets_as_one(const ReceiverRows& rows);
+    size_t tile_of(const Tile& part) const;
+    TermLimits limits_at(const Tile& part) const;
+    bool raise_order(const Tile& part, const TermSums& gather, uint32_t rays, const TermSums* direct);
     EmitterSet find_bright_texels();
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
@@ -67,6 +70,7 @@ private:
     void gather_in_rounds(std::vector<TilePlan>& plan, const std::function<size_t(size_t)>& finish_tile);
     std::vector<struct FinalPart> finish_parts(size_t tile, const TilePlan& plan);
     void store_tile(const Tile& tile, const Estimate& estimate, struct FinalPart& out);
+    void add_at_start(size_t receiver, const Term& term, const TermLight& light);
     void join(std::vector<struct FinalPart>& parts);
     /// Another answer for the part of tile i that is checked.
     Estimate answer(size_t i, const TilePlan& plan, uint32_t seed) const;
@@ -94,8 +98,8 @@ private:
     /// noise; null: this is the first.
     const TermBaker* first_ = nullptr;
     uint32_t source_samples_ = kSourceSamples;
-    double source_end_ = 0.0; ///< s, when find_source() was done
-    TermLimits limits_;
+    double source_end_ = 0.0;     ///< s, when find_source() was done
+    std::vector<uint32_t> order_; ///< [tiles] most elements of a term there
     BakeResult result_;
     TermTable table_;
     std::vector<uint32_t> all_sets_;

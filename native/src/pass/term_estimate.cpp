@@ -67,7 +67,7 @@ TermBaker::Evenness TermBaker::evenness(uint32_t set, uint32_t begin, uint32_t e
 float TermBaker::stored_light(uint32_t begin, uint32_t end) const {
     float sum = 0.0f;
     for (uint32_t r = begin; r < end; ++r) {
-        sum += luminance(source_.total(r));
+        sum += luminance(source_.total(table_, r));
         if (!has_primary_) continue;
         for (const TermColor* e = direct_.begin(r); e != direct_.end(r); ++e)
             if (table_[e->term].set() == kNoElement) sum -= luminance(e->color);
@@ -130,11 +130,11 @@ TermBaker::Estimate TermBaker::estimate(const Tile& tile, const RayPlan& plan, c
     const TileAims aims = aim_at(doors, tile, plan.gather);
     const TileAims* aimed = aims.empty() ? nullptr : &aims;
     rays += sample_direct(scene, groups, tile, {static_cast<float>(plan.gather), kFinalShare, aimed}, seed, false, rows,
-                          limits_, t.direct);
+                          limits_at(tile), t.direct);
     if (plan.gather != 0) {
         GatherOptions o = final_options(plan, settings_, groups, seed);
         o.aims = aimed;
-        rays += gather_tile(scene, tile, o, rows, limits_, t.gather);
+        rays += gather_tile(scene, tile, o, rows, limits_at(tile), t.gather);
     }
     progress_.add_rays(rays);
     t.finish(tile.count);

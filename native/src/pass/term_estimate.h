@@ -13,15 +13,18 @@ inline float gather_scale(const TermSums& s, uint32_t lane) {
 /// One tile's answer before it is stored.
 struct TermBaker::Estimate {
     TermSums gather, direct;
+    const TermTable& table;
     RayPlan plan;
     std::vector<Term> terms;
+    std::vector<float> all_on;                   ///< per term: TermTable::all_on
     std::vector<TermIndex> index;                ///< of gather and direct
     std::vector<std::vector<uint32_t>> terms_at; ///< per lane, those that bring it light, ascending
 
-    explicit Estimate(const TermTable& table) : gather(table), direct(table) {}
+    explicit Estimate(const TermTable& t) : gather(t), direct(t), table(t) {}
     void finish(uint32_t lanes) {
         terms = union_of_terms({&gather, &direct});
         index = {TermIndex(gather, terms), TermIndex(direct, terms)};
+        for (const Term& t : terms) all_on.push_back(table.all_on(t));
         terms_at.resize(lanes);
         NumberSet met(terms.size());
         for (uint32_t lane = 0; lane < lanes; ++lane) {
@@ -48,15 +51,16 @@ struct TermBaker::Estimate {
     Vec3 gathered_total(uint32_t lane) const {
         Vec3 e(0.0f);
         for (const uint32_t t : terms_at[lane])
-            if (const auto* b = gathered(t, lane)) e += b->color();
+            if (const auto* b = gathered(t, lane)) e += b->color() * all_on[t];
         return e * gather_scale(gather, lane);
     }
     Vec3 sampled_total(uint32_t lane) const {
         Vec3 e(0.0f);
         for (const uint32_t t : terms_at[lane])
-            if (const auto* b = sampled(t, lane)) e += b->color();
+            if (const auto* b = sampled(t, lane)) e += b->color() * all_on[t];
         return e;
     }
+    /// Of all terms while everything is open, present and lit.
     Vec3 total(uint32_t lane) const { return gathered_total(lane) + sampled_total(lane); }
     double total_variance(uint32_t lane) const {
         return gather_variance(gather.total_squares(lane)) + direct.total_squares(lane);

@@ -45,6 +45,15 @@ void FinalPart::thin_out(size_t begin) {
               [](const TermLight& a, const TermLight& b) { return a.term < b.term; });
 }
 
+/// Light that a receiver does not keep for an element is left out of states away from the start only: what it is
+/// there becomes part of the base.
+void TermBaker::add_at_start(size_t receiver, const Term& term, const TermLight& light) {
+    if (term.switch_count() != 0) return;
+    const float weight = s_.scene.elements[term.set()].weight;
+    result_.irradiance[receiver] += weight * light.irradiance;
+    for (int c = 0; c < kShCount; ++c) result_.sh[receiver * kShCount + static_cast<size_t>(c)] += weight * light.sh[c];
+}
+
 void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) {
     const Working here(bookkeeping_);
     out.terms = t.terms;
@@ -72,7 +81,10 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
             if (light.irradiance == Vec3(0.0f)) continue;
             const bool kept = keeps(static_cast<uint32_t>(r), t.terms[term], light);
             (kept ? out.kept : out.dropped)[term] += std::abs(luminance(light.irradiance));
-            if (kept) out.light.push_back(light);
+            if (kept)
+                out.light.push_back(light);
+            else
+                add_at_start(r, t.terms[term], light);
         }
         // Light patches have room for all.
         if (settings_.light_patches == AJAR_LIGHT_PATCHES_NONE) out.thin_out(before);

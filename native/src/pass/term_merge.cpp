@@ -5,9 +5,9 @@
 
 namespace ajar {
 
-Vec3 ReceiverRows::total(uint32_t r) const {
+Vec3 ReceiverRows::total(const TermTable& table, uint32_t r) const {
     Vec3 sum(0.0f);
-    for (const TermColor* e = begin(r); e != end(r); ++e) sum += e->color;
+    for (const TermColor* e = begin(r); e != end(r); ++e) sum += e->color * table.all_on(e->term);
     return sum;
 }
 

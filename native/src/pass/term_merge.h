@@ -26,7 +26,8 @@ struct ReceiverRows {
 
     const TermColor* begin(uint32_t r) const { return entries.data() + first[row_of[r]]; }
     const TermColor* end(uint32_t r) const { return entries.data() + first[row_of[r] + 1]; }
-    Vec3 total(uint32_t r) const;
+    /// Of all terms while everything is open, present and lit.
+    Vec3 total(const TermTable& table, uint32_t r) const;
     /// Irradiance of one term at a receiver; 0 where the row lacks it.
     Vec3 of(uint32_t r, uint32_t term) const;
 };

@@ -63,12 +63,6 @@ enum RayMask : uint32_t {
     kMaskWall = kMaskShadowOpaque | kMaskShadowSwitch ///< what parts the light of neighbouring texels
 };
 
-/// When a switchable surface is there: while element is at state 1 or at state 0.
-struct Presence {
-    uint32_t element = kNoElement;
-    bool state = true;
-};
-
 /// Which sides of surfaces hold their lightmap.
 struct SurfaceSides {
     std::vector<uint8_t> turned; ///< per triangle: the side its normal points away from

@@ -110,7 +110,7 @@ void DirectSampler<Sink>::arrive(const ShadowPacket& packet, uint32_t lane, uint
     auto through = sink.start(g.scene, g.receivers.triangle[receiver]);
     if constexpr (Sink::kSwitches)
         for (const Presence& p : {packet.covered[lane], g.emitters.presence(packet.emitter[lane])})
-            if (p.element != kNoElement && !through.condition.require(p.element, p.state)) return;
+            if (p.element != kNoElement && !through.condition.require(g.scene.elements, p)) return;
     const auto book = [&](const auto& way) {
         // A bright texel's weight is its whole radiance over the density; its terms share it.
         if (s.texel != kNoReceiver && sink.has_texels())

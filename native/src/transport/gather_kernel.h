@@ -197,14 +197,14 @@ struct Gatherer {
             const MovedPosition moved = g.receivers.moved_from(tile.first + local, f.position[lane]);
             if (!moved.exists()) return true;
             Through there = through;
-            if (there.condition.require(moved.presence.element, moved.presence.state)) {
+            if (there.condition.require(g.scene.elements, moved.presence)) {
                 worker.set(effect_of(g.scene, moved.presence));
                 const Ray ray{moved.origin, f.packet.direction(lane)};
                 ++rays;
                 walk(ray, g.tracer.intersect(ray, kMaskGather), there, {local, f.sample, f.local.weight[lane]},
                      kMaxLayers);
             }
-            return through.condition.require(moved.presence.element, !moved.presence.state);
+            return through.condition.require(g.scene.elements, moved.presence.opposite());
         }
         return true;
     }
@@ -248,7 +248,7 @@ struct Gatherer {
                 const Presence p = g.scene.presence(hit.triangle);
                 const uint8_t f = g.surfaces.flags(hit.triangle);
                 Through there = through;
-                if (there.condition.require(p.element, p.state) && !is_inside(hit, f) &&
+                if (there.condition.require(g.scene.elements, p) && !is_inside(hit, f) &&
                     shine(ray, hit, f, there, from, layers) &&
                     pass_switches(ray, switches, next + 1, end, there, from, layers)) {
                     Ray behind = ray;
@@ -256,7 +256,7 @@ struct Gatherer {
                     ++rays;
                     walk(behind, g.tracer.intersect(behind, kMaskGather), there, from, layers);
                 }
-                if (!through.condition.require(p.element, !p.state)) return false;
+                if (!through.condition.require(g.scene.elements, p.opposite())) return false;
             }
         }
         return end_segment(ray, end, through, from, layers);
@@ -408,7 +408,7 @@ struct Gatherer {
         if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return;
         if constexpr (Sink::kSwitches)
             if (const Presence there = g.emitters.presence(e);
-                there.element != kNoElement && !through.condition.require(there.element, there.state))
+                there.element != kNoElement && !through.condition.require(g.scene.elements, there))
                 return;
         const float square = s.distance * s.distance;
         const float rounded = std::isfinite(square) ? square / (square + footprint) : 1.0f;
@@ -454,14 +454,14 @@ struct Gatherer {
                 const Presence p = g.scene.presence(switches[next].triangle);
                 const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
                 Through there = through;
-                if (there.condition.require(p.element, p.state) &&
+                if (there.condition.require(g.scene.elements, p) &&
                     path_shine(ray, switches[next], there, own_seed, depth, layers, cosine) &&
                     path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers, cosine)) {
                     Ray behind = ray;
                     behind.tnear = next_tnear(end.t);
                     path(behind, there, own_seed, depth, layers, cosine);
                 }
-                if (!through.condition.require(p.element, !p.state)) return false;
+                if (!through.condition.require(g.scene.elements, p.opposite())) return false;
             }
         }
         return path_end(ray, end, through, seed, depth, layers, cosine);

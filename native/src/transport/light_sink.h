@@ -5,8 +5,6 @@
 // scene pays only for what it has: one colour, colours per light set, or colours per product of
 // elements with the conditions that switchable surfaces put on a path.
 
-#include <bit>
-
 #include "base/work_clock.h"
 #include "transport/gather.h"
 
@@ -75,8 +73,7 @@ public:
     Through start(const Snapshot& scene, uint32_t triangle) const {
         Through t;
         if constexpr (Switches)
-            if (const Presence p = scene.presence(triangle); p.element != kNoElement)
-                t.condition.assume(p.element, p.state);
+            if (const Presence p = scene.presence(triangle); p.element != kNoElement) t.condition.assume(p);
         return t;
     }
     bool has_texels() const { return rows_ != nullptr; }
@@ -108,31 +105,62 @@ private:
         else
             arrive_if(condition, slot, light);
     }
-    /// Light that needs states of doors and toggles: w factors multiply, each 1 - w factor splits in two.
+    struct Product {
+        uint32_t slot;
+        float factor;
+    };
+    struct Products {
+        Product of[1u << Condition::kCapacity];
+        uint32_t count = 0;
+
+        void add(uint32_t slot, float factor) {
+            if (factor != 0.0f) of[count++] = {slot, factor};
+        }
+    };
+
+    /// Light that needs states of doors and toggles: each presence, constant + linear x, multiplies it.
     void arrive_if(const Condition& condition, uint32_t slot, const Vec3& light) {
-        uint32_t products[1u << Condition::kCapacity], count = 0;
-        if (condition.has_assumed() && sums_.term(slot).contains(condition.element(0))) {
-            if (!condition.state(0)) return;
-            slot = sums_.slot_of(sums_.term(slot).without(condition.element(0)));
-        }
-        for (uint32_t i = condition.has_assumed(); i < condition.count() && slot != TermSums::kNone; ++i)
-            if (condition.state(i)) slot = times(slot, condition.element(i));
-        if (slot == TermSums::kNone) return;
-        products[count++] = slot;
+        Products buffers[2];
+        Products *now = &buffers[0], *next = &buffers[1];
+        if (condition.has_assumed())
+            settle(condition[0], slot, condition.at_start(), *now);
+        else
+            now->add(slot, condition.at_start());
         for (uint32_t i = condition.has_assumed(); i < condition.count(); ++i) {
-            if (condition.state(i)) continue;
-            for (uint32_t k = 0; k < count; ++k)
-                products[count + k] =
-                    products[k] != TermSums::kNone ? times(products[k], condition.element(i)) : TermSums::kNone;
-            if (products[count] == slot) return; // w * (1 - w)
-            count *= 2;
+            next->count = 0;
+            const PresenceFactors p = presence_factors(scene_.elements[condition[i].element], condition[i].state);
+            for (uint32_t k = 0; k < now->count; ++k) multiply(now->of[k], condition[i].element, p, light, *next);
+            std::swap(now, next);
         }
-        for (uint32_t k = 0; k < count; ++k)
-            if (products[k] != TermSums::kNone) sums_.arrive(products[k], std::popcount(k) % 2 != 0 ? -light : light);
+        if (const uint32_t e = condition.not_followed(); e != kNoElement) sums_.cut(e, light);
+        for (uint32_t k = 0; k < now->count; ++k) sums_.arrive(now->of[k].slot, light * now->of[k].factor);
     }
+    void multiply(const Product& product, uint32_t element, const PresenceFactors& p, const Vec3& light,
+                  Products& out) {
+        const uint32_t with = times(product.slot, element);
+        if (with != product.slot) {
+            out.add(product.slot, product.factor * p.constant);
+            if (with == TermSums::kCut)
+                sums_.cut(element, light * (product.factor * p.linear));
+            else if (with != TermSums::kNone)
+                out.add(with, product.factor * p.linear);
+        } else {
+            out.add(product.slot, product.factor * p.kept);
+            if (p.freed != 0.0f) out.add(slot_without(product.slot, element), product.factor * p.freed);
+        }
+    }
+    /// The state is known: the variable is a number.
+    void settle(const Presence& known, uint32_t slot, float factor, Products& out) {
+        if (sums_.term(slot).contains(known.element)) {
+            factor *= scene_.elements[known.element].variable(known.state ? 1.0f : 0.0f);
+            slot = slot_without(slot, known.element);
+        }
+        out.add(slot, factor);
+    }
+    uint32_t slot_without(uint32_t slot, uint32_t element) { return sums_.slot_of(sums_.term(slot).without(element)); }
     uint32_t times(uint32_t slot, uint32_t element) {
-        return sums_.times(slot, element, [&](const Term& product) {
-            return product.order() <= limits_.order && (all_combine_ || product.order() < 2 || may_combine(product));
+        return sums_.times(slot, element, limits_.order, [&](const Term& product) {
+            return all_combine_ || product.order() < 2 || may_combine(product);
         });
     }
     bool may_combine(const Term& term) const {
@@ -163,11 +191,11 @@ void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_
         const Presence p = scene.presence(hit.triangle);
         auto there = through;
         if (scene.materials[scene.triangles[hit.triangle].material].transmits &&
-            there.condition.require(p.element, p.state)) {
+            there.condition.require(scene.elements, p)) {
             there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
             if (max_component(there.color) > 0.0f) through_switches<Sink>(scene, hits, next + 1, there, emit);
         }
-        if (!through.condition.require(p.element, !p.state)) return;
+        if (!through.condition.require(scene.elements, p.opposite())) return;
     }
     emit(through);
 }

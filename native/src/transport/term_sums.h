@@ -42,6 +42,8 @@ public:
           inside_(kTileReceivers, 0.0f) {}
 
     uint32_t slots() const { return static_cast<uint32_t>(terms_.size()); }
+    /// TermTable::all_on of a slot's term.
+    float all_on(uint32_t slot) const { return all_on_[slot]; }
     const Term& term(uint32_t slot) const { return terms_[slot]; }
     /// Null where the term has not arrived at the lane or its neighbours.
     const Block* block(uint32_t slot, uint32_t lane) const {
@@ -60,19 +62,26 @@ public:
         if (recent.slot == kNone || recent.term != term) recent = {term, look_up(term)};
         return recent.slot;
     }
-    /// Slot of the product of a slot's term and the weight of a door or toggle: the same where the term has it
-    /// already, kNone where keeps(product) is false or it would have too many elements. Worked out once.
+    /// Slot of the product of a slot's term and the variable of a door or toggle: the same where the term has it
+    /// already, kCut where it would have too many elements, kNone where keeps(product) is false. Worked out once.
+    /// order: most elements of a term.
     template <class Keeps>
-    uint32_t times(uint32_t slot, uint32_t element, const Keeps& keeps) {
+    uint32_t times(uint32_t slot, uint32_t element, uint32_t order, const Keeps& keeps) {
         if (element >= products_.size()) products_.resize(element + 1);
         std::vector<uint32_t>& row = products_[element];
         if (slot >= row.size()) row.resize(slots() + slots() / 2, kNotAsked);
         if (row[slot] == kNotAsked) {
             Term product = terms_[slot];
-            row[slot] = product.multiply(element) && keeps(product) ? slot_of(product) : kNone;
+            row[slot] = !product.multiply(element) || product.order() > order ? kCut
+                        : keeps(product)                                      ? slot_of(product)
+                                                                              : kNone;
         }
         return row[slot];
     }
+    /// Counts light of one sample that no term has room for, and the door or toggle that it does not follow.
+    void cut(uint32_t element, const Vec3& light) { pending_cuts_.push_back({element, std::abs(luminance(light))}); }
+    /// Irradiance that was cut so, per element, in the unit of the blocks, summed over the lanes.
+    const std::unordered_map<uint32_t, double>& cuts() const { return cuts_; }
     /// Collects what one sample brings; end_sample() books it.
     void arrive(uint32_t slot, const Vec3& light) {
         if (mark_[slot] < pending_.size() && pending_[mark_[slot]].slot == slot) {
@@ -99,23 +108,35 @@ public:
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
 
+    /// Irradiance of all terms, their magnitudes summed over the lanes; unit as cuts().
+    double kept() const {
+        double sum = 0.0;
+        for (const auto& chunk : chunks_)
+            for (uint32_t i = 0; i < kChunkGroups * kLanes; ++i) sum += std::abs(luminance(chunk[i].color()));
+        return sum;
+    }
+
     /// Every sample, also one without light, adds cosine / density: pi per sample on average.
     void add_cosine(uint32_t lane, float value) { cosine_sum_[lane] += value; }
     void add_inside(uint32_t lane) { inside_[lane] += 1.0f; }
     float cosine_sum(uint32_t lane) const { return cosine_sum_[lane]; }
     float inside(uint32_t lane) const { return inside_[lane]; }
-    /// Squares of the luminance of all terms together: everything open, present and lit.
+    /// Squares of the luminance of all terms together while everything is open, present and lit.
     double total_squares(uint32_t lane) const { return std::max(0.0, total_[lane].squares); }
 
-    static constexpr uint32_t kNone = 0xffffffffu;
+    static constexpr uint32_t kNone = 0xffffffffu, kCut = kNone - 1;
 
 private:
-    static constexpr uint32_t kNotAsked = kNone - 1;
+    static constexpr uint32_t kNotAsked = kNone - 2;
     static constexpr uint32_t kGroups = kTileReceivers / kLanes, kChunkGroups = 64;
 
     struct Pending {
         uint32_t slot;
         Vec3 light;
+    };
+    struct PendingCut {
+        uint32_t element;
+        float light;
     };
     /// A term without a number that was asked for lately: few of them come again and again.
     struct Recent {
@@ -133,6 +154,7 @@ private:
     }
     uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
+        all_on_.push_back(table_.all_on(term));
         groups_.emplace_back();
         mark_.push_back(kNone);
         return slots() - 1;
@@ -151,6 +173,7 @@ private:
     std::vector<uint32_t> slot_of_id_;
     std::unordered_map<Term, uint32_t, TermHash> slot_of_new_;
     std::vector<Term> terms_;
+    std::vector<float> all_on_;                       ///< per slot: TermTable::all_on
     std::vector<std::array<Block*, kGroups>> groups_; ///< per slot, the sums of eight lanes; null where it never came
     std::vector<std::unique_ptr<Block[]>> chunks_;
     uint32_t next_group_ = 0;
@@ -160,10 +183,16 @@ private:
     std::vector<float> cosine_sum_, inside_;
     std::vector<uint32_t> mark_;
     std::vector<Pending> pending_;
+    std::vector<PendingCut> pending_cuts_;
+    std::unordered_map<uint32_t, double> cuts_;
     std::vector<Recent> recent_{kRecent};
 };
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
+    if (!pending_cuts_.empty()) {
+        for (const PendingCut& c : pending_cuts_) cuts_[c.element] += double{c.light} * scale * w.z;
+        pending_cuts_.clear();
+    }
     if (pending_.empty()) return;
     static_assert(kShCount == kLanes + 1);
     alignas(32) float y[kShCount];
@@ -180,7 +209,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         b.sh[kLanes] += y[kLanes] * l;
         for (int c = 0; c < 3; ++c) b.irradiance[c] += facing[c] * w.z;
         b.book(sample, along);
-        total += along;
+        total += along * all_on_[p.slot];
     }
     total_[lane].book(sample, total);
     pending_.clear();

@@ -14,7 +14,8 @@ namespace ajar {
 /// so numbers do not depend on threads. Term 0 is the base.
 class TermTable {
 public:
-    TermTable() { add({Term()}); }
+    /// elements: those that terms name; they must outlive the table.
+    explicit TermTable(const std::vector<Element>& elements) : elements_(elements) { add({Term()}); }
 
     uint32_t count() const { return static_cast<uint32_t>(terms_.size()); }
     const Term& operator[](uint32_t id) const { return terms_[id]; }
@@ -27,12 +28,20 @@ public:
     void add(std::vector<Term> terms) {
         std::sort(terms.begin(), terms.end());
         for (const Term& t : terms)
-            if (ids_.try_emplace(t, count()).second) terms_.push_back(t);
+            if (ids_.try_emplace(t, count()).second) {
+                terms_.push_back(t);
+                all_on_.push_back(all_on(t));
+            }
     }
+    /// What a term brings while all weights are 1: everything open, present and lit.
+    float all_on(const Term& term) const { return all_on_factor(elements_, term); }
+    float all_on(uint32_t id) const { return all_on_[id]; }
     static constexpr uint32_t kUnknown = 0xffffffffu;
 
 private:
+    const std::vector<Element>& elements_;
     std::vector<Term> terms_;
+    std::vector<float> all_on_;
     std::unordered_map<Term, uint32_t, TermHash> ids_;
 };
 
