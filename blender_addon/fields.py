@@ -167,6 +167,14 @@ ENGINE_FIELDS = (
         "with an error before the machine swaps",
         "Memory limit",
     ),
+    Field(
+        "overlap_pictures",
+        "bool",
+        False,
+        description="Also store pictures of how many light sets, doors and toggles meet at a texel, and of the bytes "
+        "that this takes",
+        label="Overlap pictures",
+    ),
 )
 
 # Fields of ajar_layout_settings, in the order of the struct.

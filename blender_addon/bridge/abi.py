@@ -181,6 +181,7 @@ class Settings(c.Structure):
         ("light_patches", u32),
         ("trial", u32),
         ("memory_limit", f32),
+        ("overlap_pictures", u32),
     ]
 
 

@@ -23,5 +23,8 @@ struct Target {
 /// gets the words of its base as they are.
 void run_dispatch(const terms::Dispatch& dispatch, const uint32_t* data, const uint16_t* palette,
                   const TermWeight* weights, const Target& target);
+/// The same for class B, which run_dispatch does not take.
+void run_block_dispatch(const terms::Dispatch& dispatch, const uint32_t* data, const uint16_t* palette,
+                        const TermWeight* weights, const Target& target);
 
 } // namespace ajar::runtime

@@ -175,8 +175,9 @@ ajar_runtime_stats Runtime::update() {
     for (const uint32_t index : changes_) {
         const terms::Dispatch& d = file_->dispatches()[index];
         Page& page = pages_[d.page];
-        run_dispatch(d, file_->data().data(), file_->palette(d).data(), weights_.data(),
-                     {page.width(), page.irradiance(), page.direction()});
+        const auto run = static_cast<terms::Class>(d.kind) == terms::Class::b ? run_block_dispatch : run_dispatch;
+        run(d, file_->data().data(), file_->palette(d).data(), weights_.data(),
+            {page.width(), page.irradiance(), page.direction()});
     }
     return mark_dirty();
 }

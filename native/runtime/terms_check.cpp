@@ -2,6 +2,7 @@
 #include "terms_check.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 
@@ -47,6 +48,7 @@ private:
     bool addresses_ok(const terms::Dispatch& d);
     bool index_ok(const terms::Dispatch& d) const;
     bool counts_ok(const terms::Dispatch& d) const;
+    bool blocks_ok(const terms::Dispatch& d) const;
     bool room(uint32_t first, uint64_t words) const { return fits(first, words, file_.data().size()); }
 
     const TermsFile& file_;
@@ -54,10 +56,12 @@ private:
 };
 
 bool DispatchCheck::shape_ok(const terms::Dispatch& d) const {
-    if (d.receivers == 0 || d.receivers > terms::kMaxEntries || d.entries > terms::kMaxEntries) return false;
-    if (d.page >= file_.pages().size() || (d.words != 2 && d.words != 3)) return false;
-    if (d.palette_count > terms::kMaxPalette || !fits(d.palette, d.palette_count, file_.palettes().size()))
+    const bool blocks = static_cast<Class>(d.kind) == Class::b;
+    if (d.receivers == 0 || d.receivers > terms::kMaxReceivers || (!blocks && d.entries > terms::kMaxEntries))
         return false;
+    if (d.page >= file_.pages().size() || (d.words != 2 && d.words != 3)) return false;
+    if (d.palette_count > (blocks ? terms::kMaxBlockPalette : terms::kMaxPalette)) return false;
+    if (!fits(d.palette, d.palette_count, file_.palettes().size())) return false;
     if (!ascends(file_.palette(d), file_.terms().size())) return false;
     const bool strided = d.entries == uint64_t{d.k} * d.receivers;
     switch (static_cast<Class>(d.kind)) {
@@ -69,6 +73,8 @@ bool DispatchCheck::shape_ok(const terms::Dispatch& d) const {
             return d.k >= 5 && d.k <= 8;
         case Class::v16:
             return d.k >= 9 && d.k <= 16;
+        case Class::b:
+            return d.k >= 1;
     }
     return false;
 }
@@ -77,6 +83,10 @@ bool DispatchCheck::places_ok(const terms::Dispatch& d) const {
     if (!room(d.address, d.receivers) || !room(d.base, 2ull * d.receivers)) return false;
     if (!room(d.payload, uint64_t{d.words} * d.entries)) return false;
     const auto kind = static_cast<Class>(d.kind);
+    if (kind == Class::b) {
+        const size_t blocks = terms::block_count(d.receivers);
+        return room(d.starts, 2ull * (blocks + 1)) && room(d.index, file_.data()[d.starts + 2 * blocks]);
+    }
     if (kind != Class::u && !room(d.index, (d.entries + 3ull) / 4)) return false;
     if (kind != Class::v8 && kind != Class::v16) return true;
     const terms::CountPacking p = terms::packing_of(kind);
@@ -99,7 +109,7 @@ bool DispatchCheck::addresses_ok(const terms::Dispatch& d) {
 }
 
 bool DispatchCheck::index_ok(const terms::Dispatch& d) const {
-    if (static_cast<Class>(d.kind) == Class::u) return true;
+    if (static_cast<Class>(d.kind) == Class::u || static_cast<Class>(d.kind) == Class::b) return true;
     const auto* index = reinterpret_cast<const uint8_t*>(file_.data().data() + d.index);
     return std::all_of(index, index + d.entries, [&](uint8_t i) { return i < d.palette_count; });
 }
@@ -124,8 +134,32 @@ bool DispatchCheck::counts_ok(const terms::Dispatch& d) const {
     return running == d.entries && most == d.k;
 }
 
+/// Slots and entries of every block follow those of the one before; a block's terms ascend.
+bool DispatchCheck::blocks_ok(const terms::Dispatch& d) const {
+    if (static_cast<Class>(d.kind) != Class::b) return true;
+    const uint32_t* const slots = file_.data().data() + d.index;
+    const auto* starts = reinterpret_cast<const terms::BlockStart*>(file_.data().data() + d.starts);
+    const uint32_t blocks = terms::block_count(d.receivers), slot_count = starts[blocks].slot;
+    uint64_t slot = 0, entry = 0;
+    uint32_t most = 0;
+    for (uint32_t b = 0; b < blocks; ++b) {
+        if (starts[b].slot != slot || starts[b].entry != entry) return false;
+        if (starts[b + 1].slot < slot || starts[b + 1].slot > slot_count) return false;
+        const uint32_t lanes = std::min(terms::kBlock, d.receivers - b * terms::kBlock);
+        uint32_t count[terms::kBlock] = {};
+        for (uint32_t least = 0; slot < starts[b + 1].slot; ++slot) {
+            const uint32_t place = terms::slot_place(slots[slot]), mask = terms::slot_mask(slots[slot]);
+            if (place < least || place >= d.palette_count || mask == 0 || (mask >> lanes) != 0) return false;
+            least = place + 1;
+            entry += static_cast<uint32_t>(std::popcount(mask));
+            for (uint32_t i = 0; i < lanes; ++i) most = std::max(most, count[i] += (mask >> i) & 1u);
+        }
+    }
+    return starts[blocks].entry == entry && entry == d.entries && most == d.k;
+}
+
 bool DispatchCheck::ok(const terms::Dispatch& d) {
-    return shape_ok(d) && places_ok(d) && addresses_ok(d) && index_ok(d) && counts_ok(d);
+    return shape_ok(d) && places_ok(d) && addresses_ok(d) && index_ok(d) && counts_ok(d) && blocks_ok(d);
 }
 
 bool page_ok(const terms::Page& page) {

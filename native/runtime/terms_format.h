@@ -14,11 +14,21 @@
 //   address  [receivers]      y << 16 | x, row 0 is the top row, as in the page's DDS files
 //   base     [2][receivers]   R11G11B10F irradiance of all, then RGBA8 direction and ratio of all
 //   payload  [words][entries] plane by plane; words is 2 or 3 (see Layout)
-//   index    [entries] bytes  place of the entry's term in the dispatch's palette; not in class U
+//   index    [entries] bytes  place of the entry's term in the dispatch's palette; not in U and B
+//            [slots]          class B: place of the slot's term in the palette | mask << 16
 //   counts   packed bits      entries of each receiver less the class's least; classes V8 and V16
 //   starts   [batches] u16    first entry of each batch of receivers; classes V8 and V16
+//            [blocks + 1]     class B: BlockStart, of the first slot and entry of each block
 // Entries of a receiver are in ascending order of terms. Classes U and Q store entry s of receiver
 // t at s * receivers + t; V8 and V16 store a receiver's entries one after the other.
+//
+// Class B: receivers 16 b ... 16 b + 15 are block b. A block lists the terms that any of them has,
+// ascending: its slots. Bit i of a slot's mask says that receiver 16 b + i has the term. Entries lie
+// slot by slot, in a slot by receiver, only those that are there: in a slot of all 16, neighbouring
+// receivers read neighbouring words, and the weight of a term is looked up once for all of them.
+//
+// Version 2 added class B and made room for 8 elements of a term instead of 4; version 1 held 16
+// terms at a receiver at most.
 
 #include <bit>
 #include <cstddef>
@@ -32,7 +42,7 @@ static_assert(std::endian::native == std::endian::little, "terms.bin is read in 
 
 inline constexpr char kFileName[] = "terms.bin";
 inline constexpr char kMagic[8] = {'A', 'J', 'A', 'R', 'T', 'E', 'R', 'M'};
-inline constexpr uint32_t kVersion = 1;
+inline constexpr uint32_t kVersion = 2;
 inline constexpr size_t kSectionAlignment = 16;
 
 enum Section : uint32_t { kStrings, kElements, kPages, kTerms, kDispatches, kPalette, kData, kSectionCount };
@@ -80,7 +90,7 @@ static_assert(sizeof(Page) == 24);
 /// terms are those of the unsigned layout there too.
 enum class Layout : uint32_t { unsigned_words = 2, signed_words = 3 };
 
-inline constexpr uint32_t kMaxElements = 4; ///< of a term
+inline constexpr uint32_t kMaxElements = 8; ///< of a term
 
 struct Term {
     uint32_t element_count;
@@ -89,19 +99,23 @@ struct Term {
     float scale;                     ///< power of two
     uint32_t receivers;
 };
-static_assert(sizeof(Term) == 32);
+static_assert(sizeof(Term) == 48);
 
 /// U: all receivers share one list of 1..8 terms. Q: all have the same number of terms, 1..4.
-/// V8: 5..8 terms each. V16: 9..16 terms each.
-enum class Class : uint32_t { u = 0, q = 1, v8 = 2, v16 = 3 };
+/// V8: 5..8 terms each. V16: 9..16 terms each. B: any number; the engine uses it from 17 on.
+enum class Class : uint32_t { u = 0, q = 1, v8 = 2, v16 = 3, b = 4 };
+inline constexpr uint32_t kClassCount = 5;
 
-inline constexpr uint32_t kMaxEntries = 65536; ///< of a dispatch: starts are 16 bits wide
-inline constexpr uint32_t kMaxPalette = 256;   ///< of a dispatch: an index is a byte
-inline constexpr uint32_t kMaxOverlap = 16;    ///< terms at a receiver
+inline constexpr uint32_t kMaxReceivers = 65536;    ///< of a dispatch
+inline constexpr uint32_t kMaxEntries = 65536;      ///< of a dispatch, but in class B: starts are 16 bits wide
+inline constexpr uint32_t kMaxPalette = 256;        ///< of a dispatch, but in class B: an index is a byte
+inline constexpr uint32_t kMaxBlockPalette = 65536; ///< of a dispatch of class B
+inline constexpr uint32_t kMaxListed = 16;          ///< terms of a receiver outside class B
+inline constexpr uint32_t kBlock = 16;              ///< receivers of a block of class B
 
 struct Dispatch {
     uint32_t kind; ///< Class
-    uint32_t k;    ///< terms of each receiver; the most of any in V8 and V16
+    uint32_t k;    ///< terms of each receiver; the most of any in V8, V16 and B
     uint32_t words;
     uint32_t page;
     uint32_t receivers, entries;
@@ -141,6 +155,17 @@ constexpr uint32_t entries_before(uint32_t fields, const CountPacking& p, uint32
     return p.least * t + std::popcount(before & 0x249249u) + 2 * std::popcount(before & 0x492492u) +
            4 * std::popcount(before & 0x924924u);
 }
+
+/// Where a block of class B begins; one more after the last block says where it ends.
+struct BlockStart {
+    uint32_t slot, entry;
+};
+static_assert(sizeof(BlockStart) == 8);
+
+constexpr uint32_t block_count(uint32_t receivers) { return (receivers + kBlock - 1) / kBlock; }
+constexpr uint32_t make_slot(uint32_t place, uint32_t mask) { return place | (mask << 16); }
+constexpr uint32_t slot_place(uint32_t slot) { return slot & 0xffffu; }
+constexpr uint32_t slot_mask(uint32_t slot) { return slot >> 16; }
 
 /// Hash of bytes, 8 at a time: xor, multiply, fold (constants of splitmix64). Each step is a
 /// bijection of the state, so a change within one word always changes the result.

@@ -29,6 +29,7 @@ ajar_settings EngineFuzz::settings() {
     s.light_patches = mostly(pick(3), 0.97);
     s.trial = chance(0.9) ? 0 : 1 + pick(2);
     if (chance(0.05)) s.memory_limit = scalar();
+    s.overlap_pictures = pick(2);
     return s;
 }
 

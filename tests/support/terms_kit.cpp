@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terms_kit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -77,7 +78,28 @@ void fill_everything(TermScene& scene) {
     }
     for (uint32_t t = 0; t < 9; ++t) // more than 8 at some texels
         scene.add_term({t}, texel_range(3900 - 10 * t, 60 + 10 * t), t == 8);
+    for (uint32_t t = 0; t < 30; ++t) // more than 16 at others, some signed, in lists that differ
+        scene.add_term({t % 15, 15 + t % 5}, texel_range(3300 - 7 * t, 60 + 9 * t), t % 8 == 7);
     scene.add_term({1}, {});
+}
+
+void add_random_lists(TermScene& scene, uint32_t texels, uint32_t terms, uint32_t most) {
+    std::vector<uint32_t> order = texel_range(0, terms);
+    std::vector<std::vector<uint32_t>> texels_of(terms);
+    for (uint32_t texel = 0; texel < texels; ++texel) {
+        std::shuffle(order.begin(), order.end(), scene.random());
+        const uint32_t count = texel == 0 ? most : scene.below(most + 1);
+        for (uint32_t i = 0; i < count; ++i) texels_of[order[i]].push_back(texel);
+    }
+    for (uint32_t t = 0; t < terms; ++t) {
+        const uint32_t set = scene.add_element("set " + std::to_string(t), "light_set");
+        scene.add_term({set}, texels_of[t], t >= terms - terms / 8);
+    }
+}
+
+void fill_hundreds(TermScene& scene) {
+    scene.add_page(37, 23);
+    add_random_lists(scene, 37 * 23, 340, 300);
 }
 
 namespace {
@@ -107,7 +129,7 @@ private:
     terms::SectionPlace place_;
 };
 
-/// Entries of each receiver, bit by bit as the format says.
+/// Entries of each receiver, bit by bit as the format says; not for class B.
 std::vector<uint32_t> counts_of(const Reader& data, const terms::Dispatch& d) {
     if (d.kind <= 1) return std::vector<uint32_t>(d.receivers, d.k);
     const uint32_t bits = d.kind == 2 ? 2 : 3, least = d.kind == 2 ? 5 : 9;
@@ -128,8 +150,10 @@ struct Decoder {
 
     Reader section(terms::Section s) const { return {bytes, header.sections[s]}; }
     void tables();
-    void dispatch(uint32_t index);
-    DecodedEntry entry(const terms::Dispatch& d, uint32_t index, uint32_t slot) const;
+    DecodedEntry entry(const terms::Dispatch& d, uint32_t index, uint32_t place) const;
+    void add_receivers(uint32_t index);
+    void add_lists(uint32_t index);
+    void add_blocks(uint32_t index);
 };
 
 void Decoder::tables() {
@@ -149,37 +173,63 @@ void Decoder::tables() {
     }
 }
 
-DecodedEntry Decoder::entry(const terms::Dispatch& d, uint32_t index, uint32_t slot) const {
+DecodedEntry Decoder::entry(const terms::Dispatch& d, uint32_t index, uint32_t place) const {
     const Reader data = section(terms::kData);
-    const uint32_t place = d.kind == 0 ? slot : data.at<uint8_t>(4ull * d.index + index);
     const uint32_t term = out.palettes[&d - out.dispatches.data()].at(place);
     const auto word = [&](uint32_t plane) {
-        return data.at<uint32_t>(uint64_t{d.payload} + plane * d.entries + index);
+        return data.at<uint32_t>(uint64_t{d.payload} + uint64_t{plane} * d.entries + index);
     };
     const Vec3 e = d.words == 2 ? unpack_r11g11b10f(word(0))
                                 : Vec3(unpack_half(word(0) & 0xffff), unpack_half(word(0) >> 16), unpack_half(word(1)));
     return {term, e * out.terms.at(term).scale, word(d.words - 1)};
 }
 
-void Decoder::dispatch(uint32_t index) {
+void Decoder::add_receivers(uint32_t index) {
     const terms::Dispatch& d = out.dispatches[index];
     const Reader data = section(terms::kData);
-    uint32_t first = 0, running = 0;
+    uint32_t first = 0;
     for (uint32_t p = 0; p < d.page; ++p) first += out.pages.at(p).width * out.pages[p].height;
-    const std::vector<uint32_t> counts = counts_of(data, d);
     auto& order = out.order.emplace_back();
     for (uint32_t r = 0; r < d.receivers; ++r) {
         const uint32_t address = data.at<uint32_t>(d.address + r), x = address & 0xffff, y = address >> 16;
         const uint32_t texel = first + (out.pages[d.page].height - 1 - y) * out.pages[d.page].width + x;
         DecodedReceiver receiver{index, data.at<uint32_t>(d.base + r), data.at<uint32_t>(d.base + d.receivers + r), {}};
-        for (uint32_t s = 0; s < counts[r]; ++s)
-            receiver.entries.push_back(entry(d, d.kind <= 1 ? s * d.receivers + r : running + s, s));
-        running += counts[r];
         order.push_back(texel);
         if (!out.receivers.emplace(texel, std::move(receiver)).second)
             throw std::runtime_error("a texel is in two dispatches");
     }
+}
+
+void Decoder::add_lists(uint32_t index) {
+    const terms::Dispatch& d = out.dispatches[index];
+    const Reader data = section(terms::kData);
+    const std::vector<uint32_t> counts = counts_of(data, d);
+    uint32_t running = 0;
+    for (uint32_t r = 0; r < d.receivers; ++r) {
+        auto& entries = out.receivers.at(out.order[index][r]).entries;
+        for (uint32_t s = 0; s < counts[r]; ++s) {
+            const uint32_t at = d.kind <= 1 ? s * d.receivers + r : running + s;
+            entries.push_back(entry(d, at, d.kind == 0 ? s : data.at<uint8_t>(4ull * d.index + at)));
+        }
+        running += counts[r];
+    }
     if (d.kind > 1 && running != d.entries) throw std::runtime_error("counts and entries differ");
+}
+
+void Decoder::add_blocks(uint32_t index) {
+    const terms::Dispatch& d = out.dispatches[index];
+    const Reader data = section(terms::kData);
+    uint32_t next = 0, slot = 0;
+    for (uint32_t block = 0; 16 * block < d.receivers; ++block) {
+        if (data.at<uint32_t>(d.starts + 2 * block) != slot || data.at<uint32_t>(d.starts + 2 * block + 1) != next)
+            throw std::runtime_error("a block starts elsewhere");
+        for (; slot < data.at<uint32_t>(d.starts + 2 * block + 2); ++slot)
+            for (uint32_t i = 0; i < 16; ++i)
+                if ((data.at<uint32_t>(d.index + slot) >> (16 + i)) % 2 == 1)
+                    out.receivers.at(out.order[index].at(16 * block + i))
+                        .entries.push_back(entry(d, next++, data.at<uint32_t>(d.index + slot) % 65536));
+    }
+    if (next != d.entries) throw std::runtime_error("slots and entries differ");
 }
 
 } // namespace
@@ -192,7 +242,13 @@ double variable_of(bool is_light_set, double start, double weight) {
 DecodedTerms decode_terms(const std::vector<uint8_t>& bytes) {
     Decoder decoder{bytes, {}, {}};
     decoder.tables();
-    for (uint32_t i = 0; i < decoder.out.dispatches.size(); ++i) decoder.dispatch(i);
+    for (uint32_t i = 0; i < decoder.out.dispatches.size(); ++i) {
+        decoder.add_receivers(i);
+        if (decoder.out.dispatches[i].kind == 4)
+            decoder.add_blocks(i);
+        else
+            decoder.add_lists(i);
+    }
     return std::move(decoder.out);
 }
 

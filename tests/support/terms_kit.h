@@ -51,6 +51,13 @@ std::vector<uint32_t> texel_range(uint32_t first, uint32_t count);
 /// dispatches, unsigned and signed, products, a term of nothing.
 void fill_everything(TermScene& scene);
 
+/// Adds light sets, each with a term, and the last eighth of the terms signed. Each of the texels 0, 1, ... gets up to
+/// `most` terms of them, no two the same list; the first texel gets that many.
+void add_random_lists(TermScene& scene, uint32_t texels, uint32_t terms, uint32_t most);
+
+/// A page of 37 x 23 texels with up to 300 terms each.
+void fill_hundreds(TermScene& scene);
+
 struct DecodedEntry {
     uint32_t term;
     ajar::Vec3 irradiance; ///< W/m^2

@@ -29,6 +29,13 @@ std::string read_text(const fs::path& path) {
     return {bytes.begin(), bytes.end()};
 }
 
+/// Bytes of all dispatches that a manifest states.
+double terms_bytes(const nlohmann::json& manifest) {
+    double bytes = 0.0;
+    for (const nlohmann::json& c : manifest["dispatches"]) bytes += c["bytes"].get<double>();
+    return bytes;
+}
+
 class PackageWriter : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -307,6 +314,39 @@ TEST_F(PackageWriter, TermsOfAnOlderPackageDoNotStay) {
     EXPECT_TRUE(fs::exists(root_ / "package/terms.bin")); // no term, but an element that a game may ask for
     write_package(content_, root_ / "package");
     EXPECT_FALSE(fs::exists(root_ / "package/terms.bin"));
+}
+
+TEST_F(PackageWriter, OverlapPicturesShowTermsAndBytesOfEachTexel) {
+    kit::TermScene scene;
+    scene.add_page(8, 4);
+    for (uint32_t t = 0; t < 64; ++t) {
+        const uint32_t set = scene.add_element("set", "light_set");
+        scene.add_term({set}, t == 0 ? std::vector<uint32_t>{3, 20} : std::vector<uint32_t>{20});
+    }
+    scene.content.overlap_pictures = true;
+    write_package(scene.content, root_ / "package");
+    const nlohmann::json page = manifest(root_ / "package")["pages"][0], terms = manifest(root_ / "package")["terms_file"];
+    EXPECT_EQ(terms["overlap"]["max"], 64);
+    EXPECT_EQ(terms["overlap"]["histogram"][0]["texels"], 1);
+    EXPECT_EQ(terms["overlap"]["histogram"][6]["texels"], 1);
+    EXPECT_EQ(terms["bytes_per_texel"]["mean"].get<double>() * 2, terms_bytes(manifest(root_ / "package")));
+    const auto picture = [&](const char* what) {
+        uint32_t width = 0, height = 0;
+        const std::string name = page[what];
+        const auto texels = decode_png(read_file(root_ / "package" / name), name, width, height);
+        EXPECT_EQ(width, 8u);
+        return texels;
+    };
+    const std::vector<uint32_t> overlap = picture("overlap"), bytes = picture("bytes");
+    EXPECT_EQ(overlap[0], 0xff000000u);
+    EXPECT_EQ(overlap[3], 0xff590000u);  // dark blue: one
+    EXPECT_EQ(overlap[20], 0xff1acc1au); // green: 4^3
+    EXPECT_NE(bytes[3], bytes[20]);
+    EXPECT_EQ(bytes[4], 0xff000000u);
+    scene.content.overlap_pictures = false;
+    write_package(scene.content, root_ / "package");
+    EXPECT_FALSE(fs::exists(root_ / "package" / "page_0.overlap.png"));
+    EXPECT_FALSE(fs::exists(root_ / "package" / "page_0.bytes.png"));
 }
 
 TEST_F(PackageWriter, HashFollowsTerms) {

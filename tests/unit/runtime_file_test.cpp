@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "package/file_io.h"
 #include "runtime_kit.h"
 
 namespace {
@@ -19,6 +20,8 @@ void fill_small(kit::TermScene& scene) {
     for (uint32_t e = 1; e < 9; ++e) scene.add_term({e}, kit::texel_range(132 + e, 16), e == 5);
     scene.add_term({0, 9}, kit::texel_range(130, 14), true);
     scene.add_term({9}, kit::texel_range(136, 10));
+    for (uint32_t a = 0; a < 3; ++a) // 21 at some of three texels
+        for (uint32_t b = a + 1; b < 9; ++b) scene.add_term({a, b}, kit::texel_range(160 + b % 2, 2), a + b == 5);
 }
 
 ajar_runtime_result try_open(const std::string& path) {
@@ -44,12 +47,15 @@ protected:
     const std::vector<std::string> files_ = {"terms.bin", "page_0.irradiance.dds", "page_0.direction.dds"};
 };
 
-TEST_F(RuntimeFile, TheSmallPackageHoldsEveryClassAndLayout) {
-    const kit::DecodedTerms terms = kit::decode_terms(folder_->read("terms.bin"));
-    bool classes[4] = {}, words[4] = {};
+void expect_every_class(const kit::DecodedTerms& terms) {
+    bool classes[terms::kClassCount] = {}, words[4] = {};
     for (const terms::Dispatch& d : terms.dispatches) classes[d.kind] = words[d.words] = true;
     for (const bool c : classes) EXPECT_TRUE(c);
     EXPECT_TRUE(words[2] && words[3]);
+}
+
+TEST_F(RuntimeFile, TheSmallPackageHoldsEveryClassAndLayout) {
+    expect_every_class(kit::decode_terms(folder_->read("terms.bin")));
     EXPECT_EQ(try_open(folder_->path()), AJAR_RUNTIME_OK);
 }
 
@@ -153,13 +159,55 @@ TEST_F(RuntimeFile, PagesOfAnotherBakeAreRefused) {
     EXPECT_NE(std::string(ajar_runtime_error_message()).find("another bake"), std::string::npos);
 }
 
-TEST_F(RuntimeFile, ANewerFormatIsRefusedByName) {
+TEST_F(RuntimeFile, OtherFormatsAreRefusedByName) {
     std::vector<uint8_t> bytes = folder_->read("terms.bin");
-    bytes[offsetof(terms::Header, version)] = 2;
-    fix_checksum(bytes);
-    folder_->write("terms.bin", bytes);
-    EXPECT_EQ(try_open(folder_->path()), AJAR_RUNTIME_ERROR_DATA);
-    EXPECT_NE(std::string(ajar_runtime_error_message()).find("version"), std::string::npos);
+    for (const uint8_t version : {terms::kVersion - 1, terms::kVersion + 1}) {
+        bytes[offsetof(terms::Header, version)] = version;
+        fix_checksum(bytes);
+        folder_->write("terms.bin", bytes);
+        EXPECT_EQ(try_open(folder_->path()), AJAR_RUNTIME_ERROR_DATA);
+        EXPECT_NE(std::string(ajar_runtime_error_message()).find("version"), std::string::npos);
+    }
+}
+
+TEST_F(RuntimeFile, TheFuzzersSeedHoldsEveryClassToo) {
+    const std::filesystem::path seed = AJAR_FUZZ_SEED;
+    if (std::getenv("AJAR_WRITE_FUZZ_SEED") != nullptr)
+        for (const std::string& name : files_)
+            std::filesystem::copy_file(folder_->file(name), seed / name,
+                                       std::filesystem::copy_options::overwrite_existing);
+    ASSERT_EQ(try_open(seed), AJAR_RUNTIME_OK) << "make it again: AJAR_WRITE_FUZZ_SEED=1 runtime_test";
+    expect_every_class(kit::decode_terms(read_file(seed / "terms.bin")));
+}
+
+/// Writes a number at word `index` of the first class B dispatch's array that begins at word `first` of the data.
+void spoil_block(std::vector<uint8_t>& bytes, uint32_t terms::Dispatch::*first, uint32_t index, uint32_t value) {
+    terms::Header header;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    for (const terms::Dispatch& d : kit::decode_terms(bytes).dispatches) {
+        if (d.kind != static_cast<uint32_t>(terms::Class::b)) continue;
+        std::memcpy(bytes.data() + header.sections[terms::kData].offset + 4ull * (d.*first + index), &value, 4);
+        return fix_checksum(bytes);
+    }
+    FAIL() << "no dispatch of class B";
+}
+
+TEST_F(RuntimeFile, BlocksThatContradictThemselvesAreRefused) {
+    const std::vector<uint8_t> bytes = folder_->read("terms.bin");
+    const auto refused = [&](uint32_t terms::Dispatch::*array, uint32_t index, uint32_t value) {
+        std::vector<uint8_t> broken = bytes;
+        spoil_block(broken, array, index, value);
+        folder_->write("terms.bin", broken);
+        EXPECT_EQ(try_open(folder_->path()), AJAR_RUNTIME_ERROR_DATA) << index << " " << value;
+    };
+    refused(&terms::Dispatch::starts, 0, 1);          // the first slot is another
+    refused(&terms::Dispatch::starts, 1, 1);          // the first entry is another
+    refused(&terms::Dispatch::starts, 2, 0x7fffffff); // slots without end
+    refused(&terms::Dispatch::starts, 3, 5);          // entries beside the masks
+    refused(&terms::Dispatch::index, 0, 1);           // a slot of no receiver
+    refused(&terms::Dispatch::index, 0, 0x80000000);  // of one that is not there
+    refused(&terms::Dispatch::index, 0, 0x1ffff);     // of a term that is not there
+    refused(&terms::Dispatch::index, 1, 0x10000);     // of the term of the slot before
 }
 
 TEST_F(RuntimeFile, MissingFilesAreNamed) {

@@ -89,7 +89,21 @@ size_t differing(const std::vector<uint32_t>& a, const std::vector<uint32_t>& b)
     return count;
 }
 
-TEST(RuntimeShader, WritesTheWordsOfTheLibrary) {
+/// Changes weights and colours of some elements, in both alike.
+void change_some(kit::TermScene& random, kit::Runtime& library, kit::Runtime& shader, uint32_t changes) {
+    for (uint32_t change = 0; change < changes; ++change) {
+        const uint32_t e = random.below(library.element_count());
+        const bool is_set = library.element(e).kind == AJAR_RUNTIME_LIGHT_SET;
+        const float weight = random.below(4) == 0 ? 0.0f : random.uniform(0.0f, is_set ? 3.0f : 1.0f);
+        const float r = random.uniform(), g = random.uniform(), b = random.uniform();
+        for (kit::Runtime* runtime : {&library, &shader}) {
+            runtime->set_weight(e, weight);
+            if (is_set) runtime->set_color(e, r, g, b);
+        }
+    }
+}
+
+void expect_the_words_of_the_library(void (*fill)(kit::TermScene&), int rounds) {
     kit::ComputeContext gpu;
     if (!gpu.ok()) {
         std::printf("SKIPPED: %s; install libgl1-mesa-dri\n", gpu.why().c_str());
@@ -97,21 +111,12 @@ TEST(RuntimeShader, WritesTheWordsOfTheLibrary) {
     }
     std::printf("driver: %s\n", gpu.renderer().c_str());
     kit::TermScene scene;
-    kit::fill_everything(scene);
+    fill(scene);
     const kit::PackageFolder folder(scene);
     ShaderRuntime shader(gpu, folder.path());
     kit::Runtime library(folder.path());
-    for (int round = 0; round < 40; ++round) {
-        for (int change = 0; change < 1 + round % 5; ++change) {
-            const uint32_t e = scene.below(library.element_count());
-            const bool is_set = library.element(e).kind == AJAR_RUNTIME_LIGHT_SET;
-            const float weight = scene.below(4) == 0 ? 0.0f : scene.uniform(0.0f, is_set ? 3.0f : 1.0f);
-            const float r = scene.uniform(), g = scene.uniform(), b = scene.uniform();
-            for (kit::Runtime* runtime : {&library, &shader.weights()}) {
-                runtime->set_weight(e, weight);
-                if (is_set) runtime->set_color(e, r, g, b);
-            }
-        }
+    for (int round = 0; round < rounds; ++round) {
+        change_some(scene, library, shader.weights(), 1 + static_cast<uint32_t>(round) % 5);
         const ajar_runtime_stats expected = library.update(), stats = shader.update();
         EXPECT_EQ(stats.texels, expected.texels);
         const kit::PageWords words = shader.words(), truth = joined(library.pages());
@@ -119,5 +124,9 @@ TEST(RuntimeShader, WritesTheWordsOfTheLibrary) {
         ASSERT_EQ(differing(words.direction, truth.direction), 0u) << "round " << round;
     }
 }
+
+TEST(RuntimeShader, WritesTheWordsOfTheLibrary) { expect_the_words_of_the_library(kit::fill_everything, 40); }
+
+TEST(RuntimeShader, WritesThemForHundredsOfTerms) { expect_the_words_of_the_library(kit::fill_hundreds, 10); }
 
 } // namespace

@@ -61,8 +61,8 @@ void expect_packed(const State& s, uint32_t irradiance, uint32_t direction) {
 /// A scene with everything, its package, and its terms as a plain reader finds them.
 class RuntimeUpdate : public ::testing::Test {
 protected:
-    RuntimeUpdate() {
-        kit::fill_everything(scene_);
+    explicit RuntimeUpdate(void (*fill)(kit::TermScene&) = kit::fill_everything) {
+        fill(scene_);
         folder_.emplace(scene_);
         terms_ = kit::decode_terms(folder_->read("terms.bin"));
     }
@@ -162,6 +162,35 @@ TEST_F(RuntimeUpdate, PagesAreBasePlusWeightedTerms) {
         randomise(runtime, random);
         runtime.update();
         expect_sums(runtime);
+    }
+}
+
+/// Up to 300 terms at a texel.
+class RuntimeHundreds : public RuntimeUpdate {
+protected:
+    RuntimeHundreds() : RuntimeUpdate(kit::fill_hundreds) {}
+};
+
+TEST_F(RuntimeHundreds, PagesAreBasePlusWeightedTerms) {
+    kit::Runtime runtime(folder_->path());
+    kit::TermScene random(7);
+    for (int round = 0; round < 5; ++round) {
+        randomise(runtime, random);
+        runtime.update();
+        expect_sums(runtime);
+    }
+}
+
+TEST_F(RuntimeHundreds, EachSetAlone) {
+    kit::Runtime runtime(folder_->path());
+    runtime.set_all(0.0f);
+    runtime.update();
+    EXPECT_EQ(runtime.pages(), base_pages(scene_));
+    for (uint32_t e = 0; e < runtime.element_count(); e += 13) {
+        runtime.set_weight(e, 1.0f);
+        runtime.update();
+        expect_sums(runtime);
+        runtime.set_weight(e, 0.0f);
     }
 }
 

@@ -83,7 +83,7 @@ void add_overlaps(TermScene& scene, uint32_t first, const std::vector<uint32_t>&
 }
 
 std::vector<uint64_t> receivers_by_class(const Written& w) {
-    std::vector<uint64_t> n(4);
+    std::vector<uint64_t> n(terms::kClassCount);
     for (const terms::Dispatch& d : w.decoded.dispatches) n[d.kind] += d.receivers;
     return n;
 }
@@ -116,14 +116,16 @@ TEST(TermsFile, ClassesFollowOverlapAndCount) {
         add_overlaps(scene, 5, std::vector<uint32_t>(texels, terms));
         return receivers_by_class(write(scene));
     };
-    EXPECT_EQ(classes(1, 129), (std::vector<uint64_t>{129, 0, 0, 0}));
-    EXPECT_EQ(classes(8, 129), (std::vector<uint64_t>{129, 0, 0, 0}));
-    EXPECT_EQ(classes(1, 128), (std::vector<uint64_t>{0, 128, 0, 0}));
-    EXPECT_EQ(classes(4, 1), (std::vector<uint64_t>{0, 1, 0, 0}));
-    EXPECT_EQ(classes(5, 128), (std::vector<uint64_t>{0, 0, 128, 0}));
-    EXPECT_EQ(classes(8, 1), (std::vector<uint64_t>{0, 0, 1, 0}));
-    EXPECT_EQ(classes(9, 300), (std::vector<uint64_t>{0, 0, 0, 300}));
-    EXPECT_EQ(classes(16, 1), (std::vector<uint64_t>{0, 0, 0, 1}));
+    EXPECT_EQ(classes(1, 129), (std::vector<uint64_t>{129, 0, 0, 0, 0}));
+    EXPECT_EQ(classes(8, 129), (std::vector<uint64_t>{129, 0, 0, 0, 0}));
+    EXPECT_EQ(classes(1, 128), (std::vector<uint64_t>{0, 128, 0, 0, 0}));
+    EXPECT_EQ(classes(4, 1), (std::vector<uint64_t>{0, 1, 0, 0, 0}));
+    EXPECT_EQ(classes(5, 128), (std::vector<uint64_t>{0, 0, 128, 0, 0}));
+    EXPECT_EQ(classes(8, 1), (std::vector<uint64_t>{0, 0, 1, 0, 0}));
+    EXPECT_EQ(classes(9, 300), (std::vector<uint64_t>{0, 0, 0, 300, 0}));
+    EXPECT_EQ(classes(16, 1), (std::vector<uint64_t>{0, 0, 0, 1, 0}));
+    EXPECT_EQ(classes(17, 1), (std::vector<uint64_t>{0, 0, 0, 0, 1}));
+    EXPECT_EQ(classes(300, 300), (std::vector<uint64_t>{0, 0, 0, 0, 300}));
 }
 
 TEST(TermsFile, StaticTexelsAreInNoDispatch) {
@@ -168,25 +170,60 @@ TEST(TermsFile, ReceiversLieInMortonOrder) {
         }
 }
 
-TEST(TermsFile, OfMoreThanSixteenTermsTheStrongestStay) {
-    TermScene scene;
+TEST(TermsFile, ListsOfAnyLengthComeBack) {
+    for (uint32_t seed = 1; seed <= 3; ++seed) {
+        TermScene scene(seed);
+        kit::fill_hundreds(scene);
+        const Written w = write(scene);
+        expect_round_trip(scene, w);
+        EXPECT_GT(receivers_by_class(w)[4], 700u);
+        EXPECT_EQ(w.decoded.receivers.at(0).entries.size(), 300u);
+        EXPECT_EQ(w.file.summary.texels.most_terms, 300u);
+    }
+}
+
+TEST(TermsFile, AsManyTermsAsAPackageHolds) {
+    TermScene scene; // 65536 of them, 4096 at each of 16 texels
     scene.add_page(4, 4);
-    double total = 0.0, lost = 0.0;
-    for (uint32_t t = 0; t < 20; ++t) {
+    for (uint32_t t = 0; t < 65536; ++t) {
         scene.add_element("set", "light_set");
-        const float v = float((t * 7) % 20 + 1); // 1..20 in a scattered order
-        scene.add_term({t}, {5}, {v, v, v}, {pack_direction({})}, false);
-        total += v;
-        if (v <= 4.0f) lost += v;
+        scene.add_term({t}, {t % 16});
     }
     const Written w = write(scene);
-    const auto& entries = w.decoded.receivers.at(5).entries;
-    ASSERT_EQ(entries.size(), 16u);
-    for (const auto& e : entries) EXPECT_GT(e.irradiance.x, 4.5f);
-    EXPECT_TRUE(
-        std::is_sorted(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.term < b.term; }));
-    EXPECT_EQ(w.file.summary.crowded_texels, 1u);
-    EXPECT_NEAR(w.file.summary.crowded_energy, lost / total, 1e-6);
+    expect_round_trip(scene, w);
+    EXPECT_EQ(w.file.summary.texels.most_terms, 4096u);
+    scene.add_element("set", "light_set");
+    scene.add_term({65536}, {0});
+    EXPECT_THROW(write(scene), Error);
+}
+
+TEST(TermsFile, WeakTermsStayBesideStrongOnes) {
+    TermScene scene;
+    scene.add_page(4, 4);
+    const uint32_t d = pack_direction({});
+    for (uint32_t t = 0; t < 40; ++t) {
+        scene.add_element("set", "light_set");
+        const float v = std::exp2(-float((t * 7) % 40)); // in a scattered order
+        scene.add_term({t}, {5}, {v, v, v}, {d}, false);
+    }
+    const Written w = write(scene);
+    ASSERT_EQ(w.decoded.receivers.at(5).entries.size(), 40u);
+    expect_round_trip(scene, w);
+}
+
+TEST(TermsFile, TermsBeyondSixteenTakeTheirWordsAndLittleMore) {
+    const auto bytes_per_entry = [](TermScene& scene) {
+        const ClassSummary c = write(scene).file.summary.classes[4];
+        return double(c.bytes) / double(c.entries);
+    };
+    TermScene same, unlike;
+    same.add_page(64, 64);
+    add_overlaps(same, 0, std::vector<uint32_t>(4096, 100));
+    EXPECT_LT(bytes_per_entry(same),
+              8.4); // 8 are the entry's own: slots of 16 receivers take 4 / 16, receivers 12 / 100
+    unlike.add_page(64, 64);
+    kit::add_random_lists(unlike, 4096, 2000, 200); // a slot holds 1.3 of 16 receivers; of the terms some are signed
+    EXPECT_LT(bytes_per_entry(unlike), 12.0 + 4.0 + 0.5);
 }
 
 TEST(TermsFile, AnyIntensityKeepsItsPrecision) {
@@ -311,10 +348,15 @@ TEST(TermsFile, SummaryAddsUp) {
     kit::fill_everything(scene);
     const Written w = write(scene);
     const TermsSummary& s = w.file.summary;
-    uint64_t bytes = 0, entries = 0, texels = 0, run = 0, needed = 0;
+    uint64_t bytes = 0, entries = 0, texels = 0, run = 0, needed = 0, binned = 0;
     for (const ClassSummary& c : s.classes) bytes += c.bytes, entries += c.entries;
     for (const TermSummary& t : s.terms) texels += t.texels;
     EXPECT_EQ(entries, texels);
+    EXPECT_EQ(s.texels.terms, entries);
+    EXPECT_NEAR(s.texels.bytes, double(bytes), 1e-6 * double(bytes));
+    EXPECT_EQ(s.texels.texels, w.decoded.receivers.size());
+    for (const uint64_t n : s.texels.histogram) binned += n;
+    EXPECT_EQ(binned, s.texels.texels);
     EXPECT_EQ(s.bytes, w.file.bytes.size());
     EXPECT_GT(s.bytes, bytes);
     EXPECT_LT(s.bytes, bytes + 8192); // header, names, tables of elements and terms

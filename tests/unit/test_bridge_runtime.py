@@ -120,8 +120,8 @@ def terms_bin(page, elements, term, receivers):
         tables += struct.pack("<IIIf", offset, len(name.encode()), kind, weight)
         offset += len(name.encode())
     pages = struct.pack("<IIQQ", width, height, *(checksum(len(f), f) for f in (irradiance, direction)))
-    ids = [*range(len(elements)), 0, 0, 0, 0][:4]
-    terms = struct.pack("<I4IIfI", len(elements), *ids, 2, term["scale"], len(receivers))
+    ids = ([*range(len(elements))] + 8 * [0])[:8]
+    terms = struct.pack("<I8IIfI", len(elements), *ids, 2, term["scale"], len(receivers))
     n, places = len(receivers), list(receivers)
     address = [y << 16 | x for x, y in places]
     base = [receivers[p][0][i] for i in (0, 1) for p in places]
@@ -137,7 +137,7 @@ def terms_bin(page, elements, term, receivers):
         placed += [144 + len(body), len(section)]
         body += section
     size = 144 + len(body)
-    start = b"AJARTERM" + struct.pack("<IIQ", 1, len(sections), size)
+    start = b"AJARTERM" + struct.pack("<IIQ", 2, len(sections), size)
     rest = struct.pack(f"<{len(placed)}Q", *placed) + body
     return start + struct.pack("<Q", checksum(size, start, 0, rest)) + rest
 

@@ -274,8 +274,7 @@ typedef struct ajar_settings {
     uint32_t keep_bounces;  /* 1: keep the irradiance of every bounce apart (tests) */
     uint32_t combinations;  /* AJAR_COMBINATIONS_* */
     float term_threshold;   /* a texel keeps a term if lit by it directly or brighter than this share
-                               of the term's mean indirect light there; 0 keeps all. Where more than 16 are kept,
-                               products of elements beyond the 16 strongest go, unless light_patches are written */
+                               of the term's mean indirect light there; 0 keeps all */
     float door_rays;        /* final rays that aim at each door in sight, as a share of those over the
                                hemisphere; 0..1, 0 = none */
     uint32_t check_points;  /* random texels at which brute force checks the finished bake; 0 = none, the default */
@@ -284,6 +283,8 @@ typedef struct ajar_settings {
                                "predicted_seconds" how much work the other settings are, on this machine */
     float memory_limit;     /* GB that the light of sets, doors and toggles may take; 0 = what is free. A bake that
                                needs more ends with AJAR_ERROR_MEMORY before the machine swaps */
+    /* 1: the package has pictures of how many terms, and how many bytes of terms.bin, each texel takes. */
+    uint32_t overlap_pictures;
 } ajar_settings;
 AJAR_API void ajar_settings_init(ajar_settings* settings);
 

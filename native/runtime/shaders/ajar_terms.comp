@@ -16,7 +16,8 @@ layout(std430, binding = 5) readonly buffer Pages { uvec2 pages[]; };           
 layout(std430, binding = 6) buffer Irradiance { uint page_irradiance[]; };       // R11G11B10F, all pages
 layout(std430, binding = 7) buffer Direction { uint page_direction[]; };         // RGBA8
 
-const uint kU = 0u, kQ = 1u, kV8 = 2u;
+const uint kU = 0u, kQ = 1u, kV8 = 2u, kB = 4u;
+const uint kBlock = 16u; // receivers of a block of class B
 
 struct Dispatch {
     uint kind, k, words, page, receivers, entries, palette, address, base, payload, index, counts, starts;
@@ -153,25 +154,54 @@ vec3 entry_irradiance(Dispatch d, uint entry) {
                 unpack_half(data[d.payload + d.entries + entry] & 0xffffu));
 }
 
+/// A receiver's light so far, and whether any term of it is on.
+struct Sum {
+    State state;
+    bool on;
+};
+
+void add_entry(Dispatch d, uint entry, uint place, inout Sum sum) {
+    vec3 weight = weights[palette_term(d.palette + place)].rgb;
+    if (weight == vec3(0.0)) return;
+    sum.on = true;
+    precise vec3 light = entry_irradiance(d, entry) * weight;
+    sum.state = plus(sum.state, make_linear(light, data[d.payload + (d.words - 1u) * d.entries + entry]));
+}
+
+/// Classes U, Q, V8 and V16.
+void add_list(Dispatch d, uint t, inout Sum sum) {
+    bool strided = d.kind == kU || d.kind == kQ;
+    uvec2 list = strided ? uvec2(t, d.k) : list_of(d, t);
+    for (uint slot = 0u; slot < list.y; ++slot) {
+        uint entry = list.x + slot * (strided ? d.receivers : 1u);
+        add_entry(d, entry, d.kind == kU ? slot : data_byte(d.index, entry), sum);
+    }
+}
+
+/// Class B: the slots of the receiver's block.
+void add_block(Dispatch d, uint t, inout Sum sum) {
+    uint start = d.starts + 2u * (t / kBlock), lane = t % kBlock;
+    uint entry = data[start + 1u], end = data[start + 2u];
+    for (uint slot = data[start]; slot < end; ++slot) {
+        uint word = data[d.index + slot], mask = word >> 16;
+        if (((mask >> lane) & 1u) != 0u)
+            add_entry(d, entry + uint(bitCount(mask & ((1u << lane) - 1u))), word & 0xffffu, sum);
+        entry += uint(bitCount(mask));
+    }
+}
+
 void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
     Dispatch d = read_dispatch(group.x);
     uint t = group.y + gl_LocalInvocationID.x;
     if (t >= d.receivers) return;
     uint base_irradiance = data[d.base + t], base_direction = data[d.base + d.receivers + t];
-    State state = make_linear(unpack_irradiance(base_irradiance), base_direction);
-    bool strided = d.kind == kU || d.kind == kQ, on = false;
-    uvec2 list = strided ? uvec2(t, d.k) : list_of(d, t);
-    for (uint slot = 0u; slot < list.y; ++slot) {
-        uint entry = list.x + slot * (strided ? d.receivers : 1u);
-        uint place = d.kind == kU ? slot : data_byte(d.index, entry);
-        vec3 weight = weights[palette_term(d.palette + place)].rgb;
-        if (weight == vec3(0.0)) continue;
-        on = true;
-        precise vec3 light = entry_irradiance(d, entry) * weight;
-        state = plus(state, make_linear(light, data[d.payload + (d.words - 1u) * d.entries + entry]));
-    }
-    uvec2 texel_words = on ? pack_texel(state) : uvec2(base_irradiance, base_direction);
+    Sum sum = Sum(make_linear(unpack_irradiance(base_irradiance), base_direction), false);
+    if (d.kind == kB)
+        add_block(d, t, sum);
+    else
+        add_list(d, t, sum);
+    uvec2 texel_words = sum.on ? pack_texel(sum.state) : uvec2(base_irradiance, base_direction);
     uint address = data[d.address + t];
     uint texel = pages[d.page].x + (address >> 16) * pages[d.page].y + (address & 0xffffu);
     page_irradiance[texel] = texel_words.x;

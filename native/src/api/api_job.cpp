@@ -263,6 +263,7 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
             content.extras =
                 *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
         content.light_patches = static_cast<LightPatchPlanes>(j->settings().light_patches);
+        content.overlap_pictures = j->settings().overlap_pictures != 0;
         write_package(content, directory);
         return AJAR_OK;
     });

@@ -31,7 +31,8 @@ json settings_json(const ajar_settings& s) {
             {"seed", s.seed},
             {"threads", s.threads},
             {"stitch_seams", s.stitch_seams != 0},
-            {"keep_sh", s.keep_sh != 0}};
+            {"keep_sh", s.keep_sh != 0},
+            {"overlap_pictures", s.overlap_pictures != 0}};
 }
 
 json seconds_json(const Job& job) {
@@ -101,6 +102,17 @@ json terms_json(const Snapshot& s, const BakedPages& pages) {
     return terms;
 }
 
+/// What the threshold left out of all terms together, and how many terms share a texel.
+json terms_total_json(const Snapshot& s, const BakedPages& pages) {
+    std::vector<uint32_t> count(s.texel_count(), 0);
+    for (const BakedTerm& t : pages.terms)
+        for (const uint32_t texel : t.texel) ++count[texel];
+    TexelSummary summary;
+    for (const uint32_t n : count)
+        if (n > 0) summary.add(n, 0.0);
+    return {{"discarded", pages.discarded}, {"overlap", overlap_json(summary)}};
+}
+
 json receivers_json(const JobOutput& o) {
     const double count = std::max(1u, o.receivers.count());
     return {{"texels", o.receivers.count()},
@@ -157,6 +169,7 @@ std::string make_report(const Job& job) {
         {"time_limited", o.bake.time_limited},
         {"effects", effects_json(job, o, stage_seconds(job))},
         {"terms", terms_json(job.scene(), o.pages)},
+        {"terms_total", terms_total_json(job.scene(), o.pages)},
         {"warnings", warnings},
         {"memory_bytes", peak_memory()},
         {"memory_parts", memory_json(memory_parts(job.scene(), o))}};

@@ -80,7 +80,7 @@ void Assembler::fill(ThreadPool& pool, Progress& progress) {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
     if (!result.terms.terms.empty()) {
         const Working here(bookkeeping_effect(scene.elements));
-        out.crowded_out = result.terms.crowded_out;
+        out.discarded = result.terms.all_discarded;
         out.terms = make_terms(receivers, result.terms, usable, solver.get(), pool, progress);
     }
     for (size_t i = 0; i < source.size(); ++i) {
@@ -154,8 +154,7 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
                            t.texel,
                            {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()},
                            t.packed_direction});
-    c.crowded_texels = baked.crowded_out.receivers;
-    c.crowded_energy = baked.crowded_out.share();
+    c.discarded = baked.discarded;
     return c;
 }
 

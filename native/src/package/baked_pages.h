@@ -25,8 +25,8 @@ struct BakedPages {
     std::vector<uint32_t> packed_irradiance, packed_direction;
     std::vector<std::vector<Vec3>> bounces;
     std::vector<BakedTerm> terms; ///< all but the base, which the arrays above hold
-    CrowdedOut crowded_out;
-    uint64_t invalid_texels = 0; ///< covered, but inside a solid; filled from neighbours
+    double discarded = 0.0;       ///< share of all terms' light at texels that do not keep it
+    uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
     uint64_t seam_points = 0;
     uint64_t clamped_texels = 0; ///< too bright for the packed format
 };

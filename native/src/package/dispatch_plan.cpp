@@ -6,6 +6,7 @@
 #include <string>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace ajar {
 namespace {
@@ -18,7 +19,10 @@ constexpr uint64_t kDispatchCost = 256;
 /// Dispatches that may still take receivers; older ones are closed, which bounds the search.
 constexpr size_t kOpenDispatches = 64;
 
-/// Texels of a page with the same list of terms.
+/// Receivers of a piece for class B: a work group of a graphics card.
+constexpr size_t kPieceReceivers = 64;
+
+/// Texels of a page with the same list of terms, or neighbours and the terms of all their lists.
 struct Combination {
     uint32_t page = 0;
     bool is_signed = false;
@@ -49,7 +53,7 @@ std::vector<Combination> find_combinations(const std::vector<PackagePage>& pages
     for (uint32_t page = 0; page < pages.size(); ++page) {
         std::unordered_map<std::u16string, size_t> known;
         for (const uint32_t end = texel + pages[page].width * pages[page].height; texel < end; ++texel) {
-            if (lists.count(texel) == 0) continue;
+            if (lists.count(texel) == 0 || lists.count(texel) > terms::kMaxListed) continue;
             std::u16string key(lists.term.begin() + lists.first[texel], lists.term.begin() + lists.first[texel + 1]);
             const auto [it, fresh] = known.emplace(std::move(key), found.size());
             if (fresh) found.push_back({page, false, {it->first.begin(), it->first.end()}, {}});
@@ -79,6 +83,32 @@ std::vector<Combination> split(const std::vector<PackagePage>& pages, Combinatio
     return pieces;
 }
 
+/// Texels of a page with so many terms that nearly each has a list of its own, as runs of neighbours.
+std::vector<Combination> find_pieces(const std::vector<PackagePage>& pages, const TermLists& lists) {
+    std::vector<Combination> found;
+    uint32_t texel = 0;
+    for (uint32_t page = 0; page < pages.size(); ++page) {
+        Combination whole[2] = {{page, false, {}, {}}, {page, true, {}, {}}};
+        for (const uint32_t end = texel + pages[page].width * pages[page].height; texel < end; ++texel) {
+            if (lists.count(texel) <= terms::kMaxListed) continue;
+            const auto begin = lists.term.begin() + lists.first[texel];
+            const bool is_signed =
+                std::any_of(begin, begin + lists.count(texel), [&](uint16_t t) { return lists.terms[t].is_signed; });
+            whole[is_signed].texels.push_back(texel);
+        }
+        for (Combination& c : whole)
+            for (Combination& piece : split(pages, std::move(c), kPieceReceivers)) found.push_back(std::move(piece));
+    }
+    std::vector<uint8_t> has(lists.terms.size(), 0);
+    for (Combination& c : found) {
+        for (const uint32_t t : c.texels)
+            for (uint32_t e = lists.first[t]; e < lists.first[t + 1]; ++e) has[lists.term[e]] = 1;
+        for (size_t t = 0; t < has.size(); ++t)
+            if (std::exchange(has[t], uint8_t{0}) != 0) c.terms.push_back(static_cast<uint16_t>(t));
+    }
+    return found;
+}
+
 /// Receivers updated in vain, over changes of each term alone, if c joined d; none if it cannot.
 /// has: [terms] 1 for those of c.
 uint64_t waste(const PlannedDispatch& d, const Combination& c, const std::vector<uint8_t>& has) {
@@ -86,7 +116,7 @@ uint64_t waste(const PlannedDispatch& d, const Combination& c, const std::vector
     if (d.texels.size() + c.texels.size() > kSharedReceivers) return kNever;
     size_t shared = 0;
     for (const uint16_t term : d.palette) shared += has[term];
-    if (d.palette.size() + c.terms.size() - shared > terms::kMaxPalette) return kNever;
+    if (d.kind != Class::b && d.palette.size() + c.terms.size() - shared > terms::kMaxPalette) return kNever;
     return (c.terms.size() - shared) * d.texels.size() + (d.palette.size() - shared) * c.texels.size();
 }
 
@@ -121,6 +151,12 @@ std::vector<PlannedDispatch> cluster(Class kind, std::vector<Combination> pieces
     return dispatches;
 }
 
+uint32_t most_terms(const TermLists& lists, const std::vector<uint32_t>& texels) {
+    uint32_t most = 0;
+    for (const uint32_t texel : texels) most = std::max(most, lists.count(texel));
+    return most;
+}
+
 /// Combinations that may share a dispatch: page, class, terms per receiver (class Q), layout.
 using GroupKey = std::tuple<uint32_t, Class, size_t, bool>;
 
@@ -147,9 +183,12 @@ std::vector<PlannedDispatch> plan_dispatches(const std::vector<PackagePage>& pag
                 groups[key].push_back(std::move(piece));
         }
     }
+    for (Combination& piece : find_pieces(pages, lists))
+        groups[{piece.page, Class::b, 0, piece.is_signed}].push_back(std::move(piece));
     for (auto& [key, pieces] : groups)
         for (PlannedDispatch& d : cluster(std::get<1>(key), std::move(pieces), lists.terms.size())) {
             sort_morton(pages, d.texels);
+            if (d.kind == Class::b) d.k = most_terms(lists, d.texels);
             plan.push_back(std::move(d));
         }
     return plan;

@@ -52,7 +52,7 @@ private:
     uint64_t state_ = 0x9e3779b97f4a7c15ull;
 };
 
-Json page_json(const PackagePage& page, size_t index) {
+Json page_json(const PackagePage& page, size_t index, bool overlap_pictures) {
     const PageFiles files(index);
     Json json;
     json["width"] = page.width;
@@ -64,6 +64,10 @@ Json page_json(const PackagePage& page, size_t index) {
                       {"direction", files.packed_direction},
                       {"direction_png", files.direction_png},
                       {"layout", "ahd-r11g11b10f-rgba8"}};
+    if (overlap_pictures) {
+        json["overlap"] = files.overlap;
+        json["bytes"] = files.bytes;
+    }
     return json;
 }
 
@@ -127,13 +131,15 @@ Json class_json(const ClassSummary& summary, const char* name) {
             {"bytes", summary.bytes}};
 }
 
-Json terms_file_json(const TermsSummary& summary) {
-    return {{"file", terms::kFileName},
-            {"version", terms::kVersion},
-            {"bytes", summary.bytes},
-            {"wasted_updates", summary.wasted_updates},
-            {"crowded_texels", summary.crowded_texels},
-            {"crowded_energy", summary.crowded_energy}};
+Json terms_file_json(const TermsSummary& summary, double discarded) {
+    return {
+        {"file", terms::kFileName},
+        {"version", terms::kVersion},
+        {"bytes", summary.bytes},
+        {"wasted_updates", summary.wasted_updates},
+        {"discarded", discarded},
+        {"overlap", overlap_json(summary.texels)},
+        {"bytes_per_texel", {{"mean", summary.texels.mean(summary.texels.bytes)}, {"max", summary.texels.most_bytes}}}};
 }
 
 /// Elements, terms and dispatches; without elements the base alone.
@@ -144,10 +150,10 @@ void add_term_lists(Json& json, const PackageContent& content, const TermsSummar
     for (size_t i = 0; i < content.elements.size(); ++i)
         json["elements"].push_back(element_json(content, summary->elements[i], i));
     for (size_t i = 0; i < content.terms.size(); ++i) json["terms"].push_back(term_json(content, summary->terms[i], i));
-    const char* const names[] = {"U", "Q", "V8", "V16"};
+    const char* const names[] = {"U", "Q", "V8", "V16", "B"};
     for (size_t i = 0; i < std::size(names); ++i)
         json["dispatches"].push_back(class_json(summary->classes[i], names[i]));
-    json["terms_file"] = terms_file_json(*summary);
+    json["terms_file"] = terms_file_json(*summary, content.discarded);
 }
 
 void hash_terms(Hash64& hash, const PackageContent& content) {
@@ -194,6 +200,8 @@ PageFiles::PageFiles(size_t page) {
     packed_irradiance = stem + ".irradiance.dds";
     packed_direction = stem + ".direction.dds";
     direction_png = stem + ".direction.png";
+    overlap = stem + ".overlap.png";
+    bytes = stem + ".bytes.png";
 }
 
 std::string content_hash(const PackageContent& content) {
@@ -226,7 +234,8 @@ std::string manifest_json(const PackageContent& content, const TermsSummary* ter
     json["name"] = content.name;
     json["units"] = {{"length", "m"}, {"irradiance", "W/m^2"}, {"color", "scene-linear Rec.709"}};
     json["pages"] = Json::array();
-    for (size_t i = 0; i < content.pages.size(); ++i) json["pages"].push_back(page_json(content.pages[i], i));
+    for (size_t i = 0; i < content.pages.size(); ++i)
+        json["pages"].push_back(page_json(content.pages[i], i, terms != nullptr && content.overlap_pictures));
     json["instances"] = Json::array();
     for (const PackageInstance& instance : content.instances) json["instances"].push_back(instance_json(instance));
     add_term_lists(json, content, terms);

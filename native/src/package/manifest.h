@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "package/texel_summary.h"
+
 namespace ajar {
 
 /// One page as the bake leaves it. All arrays are width * height texels, bottom row first, channels
@@ -76,8 +78,8 @@ struct PackageContent {
     std::vector<PackageElement> elements;
     std::vector<PackageTerm> terms;
     LightPatchPlanes light_patches = LightPatchPlanes::none;
-    uint64_t crowded_texels = 0; ///< that lost products of elements because stronger terms left no room
-    double crowded_energy = 0.0; ///< share of all terms' luminance that was lost so
+    bool overlap_pictures = false; ///< whether pictures of what texels take are written (overlap_picture.h)
+    double discarded = 0.0;        ///< share of all terms' light at texels that do not keep it
 };
 
 /// Dispatches of one class of terms.bin (native/runtime/terms_format.h).
@@ -99,19 +101,18 @@ struct ElementSummary {
 
 /// What terms.bin holds, for the manifest.
 struct TermsSummary {
-    ClassSummary classes[4]; ///< U, Q, V8, V16
+    ClassSummary classes[5]; ///< U, Q, V8, V16, B
     std::vector<TermSummary> terms;
     std::vector<ElementSummary> elements;
     uint64_t bytes = 0;          ///< size of the file
     double wasted_updates = 1.0; ///< receivers updated over those that need it, elements changing one at a time
-    uint64_t crowded_texels = 0; ///< texels with more terms than the 16 that are stored
-    double crowded_energy = 0.0; ///< share of all terms' luminance that is lost there
+    TexelSummary texels;
 };
 
 /// File names of a page's images, e.g. "page_0.irradiance.exr".
 struct PageFiles {
     explicit PageFiles(size_t page);
-    std::string irradiance, quality, sh, packed_irradiance, packed_direction, direction_png;
+    std::string irradiance, quality, sh, packed_irradiance, packed_direction, direction_png, overlap, bytes;
 };
 
 /// Hash of the pages' sizes and texels, of the instances and of the elements' terms, e.g. "ajar64:0123456789abcdef".

@@ -9,6 +9,7 @@
 #include "package/file_io.h"
 #include "package/image_io.h"
 #include "package/light_patches.h"
+#include "package/overlap_picture.h"
 #include "package/terms_file.h"
 #include "runtime/terms_format.h"
 
@@ -72,6 +73,23 @@ void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
     write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
 }
 
+/// Pictures of how many terms, and bytes of terms.bin, the texels of all pages take.
+void write_overlap(const PackageContent& content, const TermsFile& file, const fs::path& folder) {
+    size_t first = 0;
+    for (size_t i = 0; i < content.pages.size(); ++i) {
+        const PackagePage& page = content.pages[i];
+        const size_t texels = size_t{page.width} * page.height;
+        const PageFiles files(i);
+        const auto write = [&](const std::string& name, const std::vector<uint32_t>& values, uint32_t unit) {
+            const auto colors = overlap_picture(std::span(values).subspan(first, texels), unit);
+            write_file_synced(folder / name, encode_png(page.width, page.height, colors));
+        };
+        write(files.overlap, file.texel_terms, kTermsUnit);
+        write(files.bytes, file.texel_bytes, kBytesUnit);
+        first += texels;
+    }
+}
+
 void write_text(const fs::path& path, const std::string& text) {
     write_file_synced(path, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
@@ -103,7 +121,8 @@ bool is_own_file(const std::string& name) {
     const PageFiles files(0);
     const std::string rest = "page_0" + name.substr(dot);
     return rest == files.irradiance || rest == files.quality || rest == files.sh || rest == files.packed_irradiance ||
-           rest == files.packed_direction || rest == files.direction_png;
+           rest == files.packed_direction || rest == files.direction_png || rest == files.overlap ||
+           rest == files.bytes;
 }
 
 /// Refuses to replace what is not a package.
@@ -142,6 +161,7 @@ void write_package(const PackageContent& content, const fs::path& directory) {
     const auto fill = [&](const fs::path& folder) {
         for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, folder);
         if (terms_file) write_file_synced(folder / terms::kFileName, terms_file->bytes);
+        if (terms_file && content.overlap_pictures) write_overlap(content, *terms_file, folder);
         if (content.light_patches != LightPatchPlanes::none) write_light_patches(content, folder);
         write_text(folder / kManifest, manifest);
     };

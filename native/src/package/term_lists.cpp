@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "base/error.h"
 #include "encode/ahd.h"
 #include "runtime/terms_format.h"
-#include "scene/term.h"
 
 namespace ajar {
 namespace {
-
-static_assert(kStoredTerms == terms::kMaxOverlap);
 
 Vec3 irradiance_of(const PackageTerm& term, size_t i) {
     return {term.irradiance[3 * i], term.irradiance[3 * i + 1], term.irradiance[3 * i + 2]};
@@ -106,54 +102,6 @@ void fill_entries(const PackageContent& content, TermLists& lists) {
         }
 }
 
-/// Marks the entries to drop where a texel has too many; returns their luminance.
-double mark_crowded(const PackageContent& content, TermLists& lists, uint32_t texel, std::vector<uint8_t>& drop) {
-    std::vector<uint32_t> order(lists.count(texel));
-    std::iota(order.begin(), order.end(), lists.first[texel]);
-    const auto strength = [&](uint32_t e) {
-        return std::fabs(luminance(irradiance_of(content.terms[lists.term[e]], lists.source[e])));
-    };
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return strength(a) > strength(b); });
-    double lost = 0.0;
-    for (size_t i = terms::kMaxOverlap; i < order.size(); ++i) {
-        drop[order[i]] = 1;
-        lost += strength(order[i]);
-    }
-    return lost;
-}
-
-void compact(TermLists& lists, const std::vector<uint8_t>& drop) {
-    uint32_t out = 0;
-    for (size_t texel = 0; texel + 1 < lists.first.size(); ++texel) {
-        const uint32_t begin = lists.first[texel], end = lists.first[texel + 1];
-        lists.first[texel] = out;
-        for (uint32_t e = begin; e < end; ++e) {
-            if (drop[e] != 0) continue;
-            lists.term[out] = lists.term[e];
-            lists.source[out++] = lists.source[e];
-        }
-    }
-    lists.first.back() = out;
-    lists.term.resize(out);
-    lists.source.resize(out);
-}
-
-void thin_crowded(const PackageContent& content, TermLists& lists) {
-    double lost = 0.0, total = 0.0;
-    std::vector<uint8_t> drop;
-    for (uint32_t texel = 0; texel + 1 < lists.first.size(); ++texel) {
-        if (lists.count(texel) <= terms::kMaxOverlap) continue;
-        if (drop.empty()) drop.assign(lists.term.size(), 0);
-        lists.crowded_texels++;
-        lost += mark_crowded(content, lists, texel, drop);
-    }
-    if (drop.empty()) return;
-    for (const PackageTerm& term : content.terms)
-        for (size_t i = 0; i < term.texel.size(); ++i) total += std::fabs(luminance(irradiance_of(term, i)));
-    lists.crowded_energy = total > 0.0 ? lost / total : 0.0;
-    compact(lists, drop);
-}
-
 } // namespace
 
 float storage_scale(float largest) {
@@ -177,7 +125,6 @@ TermLists collect_terms(const PackageContent& content) {
     for (const PackageTerm& term : content.terms) lists.terms.push_back(make_stored(term));
     count_entries(content, lists);
     fill_entries(content, lists);
-    thin_crowded(content, lists);
     for (const uint16_t term : lists.term) lists.terms[term].texels++;
     return lists;
 }

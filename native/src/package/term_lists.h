@@ -27,8 +27,6 @@ struct TermLists {
     std::vector<uint32_t> first; ///< [texels + 1] first entry of each texel
     std::vector<uint16_t> term;
     std::vector<uint32_t> source;
-    uint64_t crowded_texels = 0; ///< texels with more terms than can be stored
-    double crowded_energy = 0.0; ///< share of all terms' luminance that is lost there
     uint32_t count(uint32_t texel) const { return first[texel + 1] - first[texel]; }
 };
 
@@ -37,8 +35,8 @@ struct TermLists {
 std::array<uint32_t, 3> entry_words(const PackageTerm& term, const StoredTerm& stored, size_t index,
                                     bool signed_layout);
 
-/// Gathers what each texel keeps. Entries that are black once packed are left out; of more than 16
-/// the strongest by luminance stay. Throws Error(AJAR_ERROR_ARGUMENT) for terms that are malformed.
+/// Gathers what each texel keeps. Entries that are black once packed are left out. Throws Error(AJAR_ERROR_ARGUMENT)
+/// for terms that are malformed.
 TermLists collect_terms(const PackageContent& content);
 
 } // namespace ajar

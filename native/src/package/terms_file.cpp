@@ -2,11 +2,13 @@
 #include "package/terms_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "base/error.h"
 #include "package/dispatch_plan.h"
+#include "package/term_blocks.h"
 
 namespace ajar {
 namespace {
@@ -31,6 +33,7 @@ public:
             page_first_.push_back(static_cast<uint32_t>(texels_));
             texels_ += uint64_t{page.width} * page.height;
         }
+        for (auto* v : {&texel_terms_, &texel_bytes_}) v->assign(content.overlap_pictures ? texels_ : 0, 0);
     }
 
     TermsFile build(std::span<const PageChecksums> checksums);
@@ -43,6 +46,11 @@ private:
     void add_receivers(const PlannedDispatch& plan, terms::Dispatch& d);
     void add_entries(const PlannedDispatch& plan, terms::Dispatch& d);
     void add_counts(const PlannedDispatch& plan, terms::Dispatch& d);
+    void add_blocks(const PlannedDispatch& plan, terms::Dispatch& d);
+    /// Stores an entry of the lists at a place of the dispatch's payload; returns its term.
+    uint16_t put_entry(const PlannedDispatch& plan, const terms::Dispatch& d, uint32_t place, uint32_t entry);
+    template <class T>
+    uint32_t put_array(const std::vector<T>& values);
     /// Room for `bytes` in the data section, zeroed, aligned to 16 bytes; returns the first word.
     uint32_t reserve(uint64_t bytes);
     void put_byte(uint32_t word, size_t index, uint32_t value) {
@@ -57,6 +65,7 @@ private:
     uint64_t texels_ = 0;
     Sections out_;
     TermsSummary summary_;
+    std::vector<uint32_t> texel_terms_, texel_bytes_;
 };
 
 void Builder::add_names() {
@@ -114,6 +123,29 @@ void Builder::add_receivers(const PlannedDispatch& plan, terms::Dispatch& d) {
     d.rect_max = (y1 << 16) | x1;
 }
 
+uint16_t Builder::put_entry(const PlannedDispatch& plan, const terms::Dispatch& d, uint32_t place, uint32_t entry) {
+    const uint16_t term = lists_.term[entry];
+    const auto words = entry_words(content_.terms[term], lists_.terms[term], lists_.source[entry], plan.is_signed);
+    for (size_t w = 0; w < d.words; ++w) out_.data[d.payload + w * d.entries + place] = words[w];
+    return term;
+}
+
+template <class T>
+uint32_t Builder::put_array(const std::vector<T>& values) {
+    const uint32_t first = reserve(values.size() * sizeof(T));
+    std::memcpy(&out_.data[first], values.data(), values.size() * sizeof(T));
+    return first;
+}
+
+void Builder::add_blocks(const PlannedDispatch& plan, terms::Dispatch& d) {
+    const TermBlocks blocks = make_blocks(lists_, plan.texels, plan.palette);
+    d.payload = reserve(4ull * d.words * d.entries);
+    for (uint32_t i = 0; i < d.entries; ++i) put_entry(plan, d, i, blocks.entries[i]);
+    d.index = put_array(blocks.slots);
+    d.starts = put_array(blocks.starts);
+    for (const uint32_t slot : blocks.slots) summary_.terms[plan.palette[terms::slot_place(slot)]].bytes += sizeof slot;
+}
+
 void Builder::add_entries(const PlannedDispatch& plan, terms::Dispatch& d) {
     const bool strided = plan.kind == Class::u || plan.kind == Class::q;
     d.payload = reserve(4ull * d.words * d.entries);
@@ -123,10 +155,7 @@ void Builder::add_entries(const PlannedDispatch& plan, terms::Dispatch& d) {
         const uint32_t first = lists_.first[plan.texels[r]], count = lists_.count(plan.texels[r]);
         for (uint32_t s = 0; s < count; ++s) {
             const uint32_t entry = strided ? s * d.receivers + r : running + s;
-            const uint16_t term = lists_.term[first + s];
-            const auto words =
-                entry_words(content_.terms[term], lists_.terms[term], lists_.source[first + s], plan.is_signed);
-            for (uint32_t w = 0; w < d.words; ++w) out_.data[d.payload + w * d.entries + entry] = words[w];
+            const uint16_t term = put_entry(plan, d, entry, first + s);
             if (plan.kind == Class::u) continue;
             const auto place = std::lower_bound(plan.palette.begin(), plan.palette.end(), term);
             put_byte(d.index, entry, static_cast<uint32_t>(place - plan.palette.begin()));
@@ -166,8 +195,12 @@ void Builder::add_dispatch(const PlannedDispatch& plan) {
     d.palette_count = static_cast<uint32_t>(plan.palette.size());
     out_.palette.insert(out_.palette.end(), plan.palette.begin(), plan.palette.end());
     add_receivers(plan, d);
-    add_entries(plan, d);
-    add_counts(plan, d);
+    if (plan.kind == Class::b) {
+        add_blocks(plan, d);
+    } else {
+        add_entries(plan, d);
+        add_counts(plan, d);
+    }
     out_.dispatches.push_back(d);
     count_dispatch(plan, d, 4 * (out_.data.size() - before) + 2 * plan.palette.size() + sizeof d);
 }
@@ -178,10 +211,19 @@ void Builder::count_dispatch(const PlannedDispatch& plan, const terms::Dispatch&
     c.receivers += d.receivers;
     c.entries += d.entries;
     c.bytes += bytes;
-    const uint64_t entry_bytes = 4 * d.words + (plan.kind == Class::u ? 0 : 1);
-    for (const uint32_t texel : plan.texels)
+    const uint64_t entry_bytes = 4 * d.words + (plan.kind == Class::u || plan.kind == Class::b ? 0 : 1);
+    const double shared = static_cast<double>(bytes - entry_bytes * d.entries) / d.receivers;
+    for (const uint32_t texel : plan.texels) {
+        const uint32_t count = lists_.count(texel);
+        const double own = static_cast<double>(count * entry_bytes) + shared;
+        summary_.texels.add(count, own);
+        if (!texel_terms_.empty()) {
+            texel_terms_[texel] = count;
+            texel_bytes_[texel] = static_cast<uint32_t>(std::lround(own));
+        }
         for (uint32_t e = lists_.first[texel]; e < lists_.first[texel + 1]; ++e)
             summary_.terms[lists_.term[e]].bytes += entry_bytes;
+    }
 }
 
 void Builder::summarise_waste(const std::vector<PlannedDispatch>& plan) {
@@ -246,9 +288,7 @@ TermsFile Builder::build(std::span<const PageChecksums> checksums) {
     for (const PlannedDispatch& d : plan) add_dispatch(d);
     if (out_.palette.size() % 2 != 0) out_.palette.push_back(0); // whole words, for graphics cards
     summarise_waste(plan);
-    summary_.crowded_texels = content_.crowded_texels + lists_.crowded_texels;
-    summary_.crowded_energy = content_.crowded_energy + (1.0 - content_.crowded_energy) * lists_.crowded_energy;
-    TermsFile file{assemble(out_), std::move(summary_)};
+    TermsFile file{assemble(out_), std::move(summary_), std::move(texel_terms_), std::move(texel_bytes_)};
     file.summary.bytes = file.bytes.size();
     return file;
 }

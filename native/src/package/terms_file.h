@@ -19,6 +19,8 @@ struct PageChecksums {
 struct TermsFile {
     std::vector<uint8_t> bytes;
     TermsSummary summary;
+    std::vector<uint32_t> texel_terms; ///< over all texels, if content.overlap_pictures; else empty
+    std::vector<uint32_t> texel_bytes; ///< of terms.bin; what a dispatch holds for all its texels is shared evenly
 };
 
 /// Throws Error(AJAR_ERROR_ARGUMENT) for malformed terms. pages holds the checksums of each page.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The final pass of a bake with elements, and what it stores.
 #include <atomic>
-#include <span>
+#include <numeric>
 
 #include "pass/term_estimate.h"
 #include "pass/twin_check.h"
@@ -16,34 +16,7 @@ struct FinalPart {
     std::vector<uint32_t> count;
     std::vector<TermLight> light;      ///< term = index into terms
     std::vector<double> kept, dropped; ///< luminance per term
-    CrowdedOut crowded_out;
-
-    /// Drops products of elements that are none of the strongest terms of a receiver, whose light begins there:
-    /// the package would have no room for them.
-    void thin_out(size_t begin);
 };
-
-void FinalPart::thin_out(size_t begin) {
-    const auto strength = [](const TermLight& l) { return std::abs(luminance(l.irradiance)); };
-    const std::span<TermLight> own(light.begin() + static_cast<ptrdiff_t>(begin), light.end());
-    for (const TermLight& l : own) crowded_out.of += strength(l);
-    if (own.size() <= kStoredTerms) return;
-    std::stable_sort(own.begin(), own.end(),
-                     [&](const TermLight& a, const TermLight& b) { return strength(a) > strength(b); });
-    size_t left = begin + kStoredTerms;
-    for (const TermLight& l : own.subspan(kStoredTerms)) {
-        if (terms[l.term].order() < 2) {
-            light[left++] = l;
-            continue;
-        }
-        crowded_out.light += strength(l);
-        kept[l.term] -= strength(l), dropped[l.term] += strength(l);
-    }
-    crowded_out.receivers += left < light.size();
-    light.resize(left);
-    std::sort(light.begin() + static_cast<ptrdiff_t>(begin), light.end(),
-              [](const TermLight& a, const TermLight& b) { return a.term < b.term; });
-}
 
 /// Light that a receiver does not keep for an element is left out of states away from the start only: what it is
 /// there becomes part of the base.
@@ -86,8 +59,6 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
             else
                 add_at_start(r, t.terms[term], light);
         }
-        // Light patches have room for all.
-        if (settings_.light_patches == AJAR_LIGHT_PATCHES_NONE) out.thin_out(before);
         out.count.push_back(static_cast<uint32_t>(out.light.size() - before));
     }
 }
@@ -110,7 +81,6 @@ void TermBaker::join(std::vector<FinalPart>& parts) {
             kept[number[i]] += t.kept[i];
             dropped[number[i]] += t.dropped[i];
         }
-        out.crowded_out.add(t.crowded_out);
         size_t next = 0;
         for (const uint32_t count : t.count) {
             for (uint32_t k = 0; k < count; ++k, ++next) {
@@ -121,8 +91,9 @@ void TermBaker::join(std::vector<FinalPart>& parts) {
         }
         t = {};
     }
-    for (size_t i = 0; i < kept.size(); ++i)
-        out.discarded.push_back(static_cast<float>(dropped[i] / std::max(kept[i] + dropped[i], 1e-30)));
+    const auto share = [](double lost, double left) { return lost / std::max(left + lost, 1e-30); };
+    for (size_t i = 0; i < kept.size(); ++i) out.discarded.push_back(static_cast<float>(share(dropped[i], kept[i])));
+    out.all_discarded = share(std::reduce(dropped.begin(), dropped.end()), std::reduce(kept.begin(), kept.end()));
 }
 
 double TermBaker::time_left(double lights) const {

@@ -16,23 +16,13 @@ struct TermLight {
     float standard_error = 0.0f; ///< of the irradiance's luminance, W/m^2
 };
 
-/// Products of elements that receivers do not keep which more than kStoredTerms terms reach.
-struct CrowdedOut {
-    uint64_t receivers = 0;
-    double light = 0.0, of = 0.0; ///< sums of luminance: of that, of all terms
-
-    void add(const CrowdedOut& other) { receivers += other.receivers, light += other.light, of += other.of; }
-    /// Share of all terms' luminance.
-    double share() const { return of > 0.0 ? light / of : 0.0; }
-};
-
 /// Light of all terms but the base, as sparse rows over the receivers.
 struct TermResult {
     std::vector<Term> terms;     ///< ascending
     std::vector<uint64_t> first; ///< [receivers + 1] into light; empty without elements
     std::vector<TermLight> light;
     std::vector<float> discarded; ///< per term: share of its light at receivers that do not keep it
-    CrowdedOut crowded_out;
+    double all_discarded = 0.0;   ///< the same of all terms together
     double order_discarded = 0.0; ///< W/m^2, mean over receivers, of terms with more elements than the plan allows
 };
 

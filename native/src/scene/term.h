@@ -14,7 +14,6 @@
 
 namespace ajar {
 
-inline constexpr uint32_t kStoredTerms = 16; ///< of a receiver, beside the base: what the package has room for
 inline constexpr uint32_t kTermSwitches = AJAR_MAX_TERM_ELEMENTS - 1; ///< doors and toggles of a term beside a set
 
 /// A product of elements: an optional light set and up to kTermSwitches doors and toggles.
