@@ -111,7 +111,8 @@ TEST(StackedToggles, AllStatesAreExactForAsManyAsATermHolds) {
                                                    : std::uniform_real_distribution<float>(0.0f, 1.0f)(random));
                     if (round == 0) std::fill(state.begin(), state.end(), 0.0f);
                     ASSERT_NEAR(share(stack, light, state), truth(state), 4e-3)
-                        << count << " of pattern " << starts << (in_set ? ", in a set" : "") << ::testing::PrintToString(state);
+                        << count << " of pattern " << starts << (in_set ? ", in a set " : " ")
+                        << ::testing::PrintToString(state);
                 }
             }
 }

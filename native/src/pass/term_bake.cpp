@@ -67,7 +67,7 @@ bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t r
     };
     add(gather, 1.0 / std::max(rays, 1u));
     if (direct != nullptr) add(*direct, 1.0);
-    if (cut <= kCutShare * (cut + kept)) return false;
+    if (cut <= kCutShare * kept) return false;
     order_[tile_of(part)] = order + 1;
     return true;
 }

@@ -120,6 +120,7 @@ private:
 
     /// Light that needs states of doors and toggles: each presence, constant + linear x, multiplies it.
     void arrive_if(const Condition& condition, uint32_t slot, const Vec3& light) {
+        sums_.meet(light);
         Products buffers[2];
         Products *now = &buffers[0], *next = &buffers[1];
         if (condition.has_assumed())

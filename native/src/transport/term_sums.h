@@ -80,6 +80,8 @@ public:
     }
     /// Counts light of one sample that no term has room for, and the door or toggle that it does not follow.
     void cut(uint32_t element, const Vec3& light) { pending_cuts_.push_back({element, std::abs(luminance(light))}); }
+    /// Counts light of one sample that depends on doors or toggles.
+    void meet(const Vec3& light) { pending_met_ += std::abs(luminance(light)); }
     /// Irradiance that was cut so, per element, in the unit of the blocks, summed over the lanes.
     const std::unordered_map<uint32_t, double>& cuts() const { return cuts_; }
     /// Collects what one sample brings; end_sample() books it.
@@ -108,11 +110,15 @@ public:
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
 
-    /// Irradiance of all terms, their magnitudes summed over the lanes; unit as cuts().
+    /// Irradiance that cuts() are a part of: of terms without doors and toggles, and all that met some; unit as there.
     double kept() const {
-        double sum = 0.0;
-        for (const auto& chunk : chunks_)
-            for (uint32_t i = 0; i < kChunkGroups * kLanes; ++i) sum += std::abs(luminance(chunk[i].color()));
+        double sum = met_;
+        for (uint32_t slot = 0; slot < slots(); ++slot) {
+            if (terms_[slot].switch_count() != 0) continue;
+            for (const Block* group : groups_[slot])
+                for (uint32_t lane = 0; group != nullptr && lane < kLanes; ++lane)
+                    sum += std::abs(luminance(group[lane].color()));
+        }
         return sum;
     }
 
@@ -184,13 +190,17 @@ private:
     std::vector<uint32_t> mark_;
     std::vector<Pending> pending_;
     std::vector<PendingCut> pending_cuts_;
+    float pending_met_ = 0.0f;
+    double met_ = 0.0;
     std::unordered_map<uint32_t, double> cuts_;
     std::vector<Recent> recent_{kRecent};
 };
 
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
-    if (!pending_cuts_.empty()) {
+    if (pending_met_ != 0.0f) {
+        met_ += double{pending_met_} * scale * w.z;
         for (const PendingCut& c : pending_cuts_) cuts_[c.element] += double{c.light} * scale * w.z;
+        pending_met_ = 0.0f;
         pending_cuts_.clear();
     }
     if (pending_.empty()) return;
