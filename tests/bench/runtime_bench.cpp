@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What changes of weights cost a game: ajar_runtime_bench PACKAGE NAME [Google Benchmark's flags].
+// What changes of weights cost a game: ajar_runtime_bench PACKAGE NAME [Google Benchmark's flags];
+// or, by the number of terms at a texel: ajar_runtime_bench overlap [flags].
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "ajar_runtime.h"
+#include "overlap_bench.h"
 
 namespace {
 
@@ -79,6 +81,13 @@ void add(const std::string& name, Run run) {
 } // namespace
 
 int main(int argc, char** argv) {
+    if (argc >= 2 && std::strcmp(argv[1], "overlap") == 0) {
+        add_overlap_benches();
+        int count = argc - 1;
+        benchmark::Initialize(&count, argv + 1);
+        benchmark::RunSpecifiedBenchmarks();
+        return 0;
+    }
     ajar_runtime runtime = nullptr;
     if (argc < 3 || ajar_runtime_open(argv[1], &runtime) != AJAR_RUNTIME_OK) {
         std::fprintf(stderr, "usage: %s PACKAGE NAME [flags]: %s\n", argv[0], ajar_runtime_error_message());
