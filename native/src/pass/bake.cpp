@@ -34,6 +34,7 @@ void Baker::keep_bounce(std::vector<Vec3>& irradiance) {
     double sum = 0.0;
     for (const Vec3& e : irradiance) sum += luminance(e);
     result_.bounce_means.push_back(irradiance.empty() ? 0.0 : sum / static_cast<double>(irradiance.size()));
+    result_.growth.add(s_.receivers, [&](uint32_t r) { return luminance(irradiance[r]); });
     if (settings_.keep_bounces != 0) result_.bounces.push_back(irradiance);
     if (result_.source.empty()) result_.source.resize(irradiance.size(), Vec3(0.0f));
     for (size_t i = 0; i < irradiance.size(); ++i) result_.source[i] += irradiance[i];

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "pass/bounce_growth.h"
 #include "pass/gather_pace.h"
 #include "pass/term_result.h"
 #include "pass/trial_gather.h"
@@ -36,6 +37,7 @@ struct BakeResult {
     std::vector<Vec3> source;               ///< irradiance of all lights and bounces that the final gather reflected
 
     std::vector<double> bounce_means; ///< mean luminance of each bounce's irradiance
+    BounceGrowth growth;              ///< of the light from bounce to bounce
     TermResult terms;                 ///< light of every term but the base, which the arrays above hold
 
     /// Standard errors per receiver with everything open, present and lit.

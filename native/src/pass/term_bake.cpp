@@ -113,6 +113,7 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color) * table_.all_on(e.term);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(gathering_)));
+    result_.growth.add(s_.receivers, [&](uint32_t r) { return luminance(current_.total(r)); });
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
