@@ -84,7 +84,9 @@ def draw_last_bake(layout, context):
     for line in _error_lines(bake.get("error", {})):
         column.label(text=line)
     check = bake.get("self_check")
-    if check:
+    if check and "not_checked" in check:
+        column.label(text=f"Not checked by brute force: {check['not_checked']}")
+    elif check:
         column.label(
             text=f"Brute force agrees: {check['ratio']:.1%} ± {check['ratio_error']:.1%} of its light"
         )

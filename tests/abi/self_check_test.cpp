@@ -166,6 +166,49 @@ TEST(SelfCheck, BruteForceAgreesWithARightBake) {
     EXPECT_TRUE(report.at("warnings").empty());
 }
 
+TEST(SelfCheck, ABakeWithNoPlaceToLookAtIsKept) {
+    // A floor under the black backs of one-sided roofs: brute force takes it for the inside of a thing.
+    kit::Scene scene;
+    const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f}), roof = scene.emitter({0, 0, 0}, {0.5f, 0.5f, 0.5f}, true);
+    scene.instance(scene.mesh(kit::plane(2.0f, 0.0f, true)), grey, scene.page(16, 16), "floor");
+    scene.instance(scene.mesh(kit::plane(50.0f, 0.5f, true)), roof, AJAR_NONE, "roof");
+    scene.point_light({0.2f, 0.1f, 0.4f}, 10.0f, 0.05f);
+    scene.commit();
+    ajar_settings s = kit::settings(1, 64);
+    s.check_points = 64;
+    const kit::Bake bake(scene, s);
+    const nlohmann::json report = nlohmann::json::parse(bake.report());
+    const std::string why = report.at("self_check").at("not_checked");
+    EXPECT_NE(why.find("in the open"), std::string::npos) << why;
+    EXPECT_FALSE(report.at("self_check").contains("ratio"));
+    ASSERT_EQ(report.at("warnings").size(), 1u);
+    EXPECT_NE(report.at("warnings")[0].at("text").get<std::string>().find("not checked"), std::string::npos);
+    EXPECT_GT(bake.layer(AJAR_LAYER_IRRADIANCE).at(8, 8, 0), 0.0f);
+}
+
+TEST(SelfCheck, LightThatMovesToFinerTexelsDoesNotGrow) {
+    // A lit floor of 8 x 8 texels under a ceiling of 64 x 64 that gets every other bounce: the mean over texels grows
+    // from the second bounce to the third, the light does not.
+    kit::Scene scene;
+    const uint32_t grey = scene.diffuse({0.8f, 0.8f, 0.8f});
+    scene.instance(scene.mesh(kit::plane(8.0f, 0.0f, true)), grey, scene.page(8, 8), "floor");
+    scene.instance(scene.mesh(kit::plane(8.0f, 1.0f, false)), grey, scene.page(64, 64), "ceiling");
+    ajar_light_desc lamp;
+    ajar_light_desc_init(&lamp);
+    lamp.name = "lamp", lamp.type = AJAR_LIGHT_SPOT, lamp.role = AJAR_ROLE_STATIC;
+    lamp.energy = 100.0f, lamp.spot_angle = 2.0f;
+    scene.light(lamp, kit::translation(0, 0, 0.9).data());
+    scene.commit();
+    ajar_settings s = kit::settings(4, 64);
+    s.check_points = 16;
+    const nlohmann::json report = nlohmann::json::parse(kit::Bake(scene, s).report());
+    const auto& means = report.at("bounces").at("means");
+    ASSERT_GT(means.at(3).get<double>(), means.at(2).get<double>());
+    EXPECT_LT(report.at("self_check").at("bounce_gain").get<double>(), 0.8);
+    for (const auto& w : report.at("warnings"))
+        EXPECT_EQ(w.at("text").get<std::string>().find("grows"), std::string::npos);
+}
+
 TEST(SelfCheck, NothingIsCheckedUnlessAskedFor) { EXPECT_FALSE(report_of(0).contains("self_check")); }
 
 } // namespace

@@ -18,6 +18,11 @@ public:
               const Tracer tracer(*scene_);
               p.begin_stage(AJAR_STAGE_GATHER, 1.0f);
               result_ = trace_reference(*scene_, tracer, settings_, pool, p);
+              if (result_.values.size() < settings_.points) // readers hold room for all of them
+                  throw Error(AJAR_ERROR_INPUT,
+                              "found only " + std::to_string(result_.values.size()) + " of " +
+                                  std::to_string(settings_.points) + " places of lightmapped surfaces in the open",
+                              scene_->name);
           }) {}
 
     Task& task() { return task_; }

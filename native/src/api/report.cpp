@@ -124,9 +124,14 @@ json receivers_json(const JobOutput& o) {
 }
 
 json check_json(const SelfCheck& c) {
-    return {{"points", c.points},           {"ratio", c.ratio},
-            {"ratio_error", c.ratio_error}, {"far_share", c.far_share},
-            {"bounce_gain", c.bounce_gain}, {"seconds", c.seconds}};
+    json out = {
+        {"bounce_gain", c.bounce_gain.gain}, {"bounce_gain_error", c.bounce_gain.error}, {"seconds", c.seconds}};
+    if (!c.not_checked.empty()) {
+        out["not_checked"] = c.not_checked;
+        return out;
+    }
+    out.update({{"points", c.points}, {"ratio", c.ratio}, {"ratio_error", c.ratio_error}, {"far_share", c.far_share}});
+    return out;
 }
 
 json memory_json(const MemoryParts& bytes_of) {

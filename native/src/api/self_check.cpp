@@ -2,6 +2,7 @@
 #include "api/self_check.h"
 
 #include <cstdio>
+#include <new>
 
 #include "reference/reference.h"
 
@@ -15,7 +16,7 @@ constexpr double kSigmas = 4.0;
 constexpr double kFarOff = 0.1;    ///< of a texel's light
 constexpr double kMostBias = 0.05; ///< of all light
 constexpr double kMostFar = 0.1;   ///< share of points
-constexpr double kMostGain = 1.0;
+constexpr double kMostGain = 1.0;  ///< of light from one bounce to the next: no surface reflects more
 
 /// Light with every weight at 1.
 Vec3 all_on(const Snapshot& scene, const BakedPages& pages, uint32_t texel) {
@@ -68,24 +69,44 @@ void compare_points(const std::vector<CheckPoint>& points, SelfCheck& check) {
     check.far_share = static_cast<double>(far) / static_cast<double>(points.size());
 }
 
+BounceGain largest_gain(const std::vector<BounceGain>& steps) {
+    BounceGain worst;
+    const auto least = [](const BounceGain& g) { return g.gain - kSigmas * g.error; };
+    // The first step may grow: direct light can fall where no lightmap is.
+    for (size_t b = 1; b < steps.size(); ++b)
+        if (b == 1 || least(steps[b]) > least(worst)) worst = steps[b];
+    return worst;
+}
+
+std::string why_not(const std::function<void()>& work) {
+    try {
+        work();
+        return {};
+    } catch (const std::bad_alloc&) {
+        return "not enough memory";
+    } catch (const std::exception& e) {
+        return e.what();
+    }
+}
+
 SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers,
                      const BakeResult& bake, const BakedPages& pages, const ajar_settings& settings, ThreadPool& pool,
                      Progress& progress) {
     SelfCheck check;
     const double start = progress.elapsed();
-    std::vector<CheckPoint> points;
-    for (const ReferenceValue& v : trace_points(scene, tracer, settings, pool, progress).values) {
-        const Page& page = scene.pages[v.point.page];
-        const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
-        if (pages.validity[texel] != 1.0f) continue;
-        const float error = bake.all_on_error()[receivers.of_texel[texel]];
-        points.push_back({luminance(all_on(scene, pages, texel)), error, luminance(v.irradiance), v.standard_error});
-    }
-    compare_points(points, check);
-    // The first step may grow: direct light can fall where no lightmap is.
-    const std::vector<double>& means = bake.bounce_means;
-    for (size_t b = 2; b < means.size(); ++b)
-        if (means[b - 1] > 0.0) check.bounce_gain = std::max(check.bounce_gain, means[b] / means[b - 1]);
+    check.bounce_gain = largest_gain(bake.growth.steps);
+    check.not_checked = why_not([&] {
+        std::vector<CheckPoint> points;
+        for (const ReferenceValue& v : trace_points(scene, tracer, settings, pool, progress).values) {
+            const Page& page = scene.pages[v.point.page];
+            const auto texel = static_cast<uint32_t>(page.first_texel + uint64_t{v.point.y} * page.width + v.point.x);
+            if (pages.validity[texel] != 1.0f) continue;
+            const float error = bake.all_on_error()[receivers.of_texel[texel]];
+            points.push_back({luminance(all_on(scene, pages, texel)), error, luminance(v.irradiance), v.standard_error});
+        }
+        if (points.empty()) throw Error(AJAR_ERROR_INPUT, "found no valid texel in the open");
+        compare_points(points, check);
+    });
     check.seconds = progress.elapsed() - start;
     return check;
 }
@@ -93,12 +114,14 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const Lightmap
 double try_check(const Snapshot& scene, const Tracer& tracer, const ajar_settings& settings, ThreadPool& pool,
                  Progress& progress) {
     const double start = progress.elapsed();
-    trace_points(scene, tracer, settings, pool, progress);
+    why_not([&] { trace_points(scene, tracer, settings, pool, progress); });
     return progress.elapsed() - start;
 }
 
 std::vector<Warning> check_warnings(const SelfCheck& c, const std::string& scene_name) {
     std::vector<Warning> out;
+    if (!c.not_checked.empty())
+        out.push_back({scene_name, "self-check: the finished bake was not checked: " + c.not_checked});
     if (std::abs(c.ratio - 1.0) > kMostBias && std::abs(c.ratio - 1.0) > kSigmas * c.ratio_error)
         out.push_back({scene_name, "self-check: the baked light is " + percent(c.ratio) +
                                        " of what brute force finds at random texels; bake with combinations "
@@ -107,10 +130,9 @@ std::vector<Warning> check_warnings(const SelfCheck& c, const std::string& scene
         out.push_back({scene_name, "self-check: " + percent(c.far_share) +
                                        " of random texels are more than a tenth off what brute force finds; more "
                                        "texels per metre show finer shadows"});
-    if (c.bounce_gain > kMostGain)
-        out.push_back({scene_name,
-                       "self-check: light grows from bounce to bounce; look for materials brighter "
-                       "than white"});
+    if (c.bounce_gain.gain - kSigmas * c.bounce_gain.error > kMostGain)
+        out.push_back({scene_name, "self-check: light grows from bounce to bounce, to " + percent(c.bounce_gain.gain) +
+                                       " of the bounce before; no surface does that, so do not trust its brightness"});
     return out;
 }
 

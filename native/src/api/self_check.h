@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+
 #include "accel/embree_scene.h"
 #include "package/baked_pages.h"
 
@@ -13,11 +15,13 @@ struct SelfCheck {
     double ratio = 1.0;       ///< light of the bake over that of the reference, both summed
     double ratio_error = 0.0; ///< standard error of it
     double far_share = 0.0;   ///< of the points: further apart than a tenth and 4 standard errors
-    double bounce_gain = 0.0; ///< most light of a bounce over that of the one before; light that grows is wrong
+    BounceGain bounce_gain;   ///< the step from bounce to bounce that most surely grows; light that grows is wrong
+    std::string not_checked;  ///< why nothing above is known but the gain; empty: it is
     double seconds = 0.0;
 };
 
-/// Traces the reference at settings.check_points texels and compares. Throws Cancelled.
+/// Traces the reference at settings.check_points texels and compares. A failure, and no place to look at, become
+/// not_checked: a finished bake is worth keeping without a check. Throws Cancelled.
 SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const LightmapReceivers& receivers,
                      const BakeResult& bake, const BakedPages& pages, const ajar_settings& settings, ThreadPool& pool,
                      Progress& progress);
@@ -30,6 +34,12 @@ double try_check(const Snapshot& scene, const Tracer& tracer, const ajar_setting
 struct CheckPoint {
     float baked, baked_error, reference, reference_error;
 };
+
+/// What work throws, in words; empty if it succeeds. Lets Cancelled pass.
+std::string why_not(const std::function<void()>& work);
+
+/// The step that grows by most beyond 4 standard errors, the first one left out.
+BounceGain largest_gain(const std::vector<BounceGain>& steps);
 
 /// Compares; bounce_gain and seconds are left alone.
 void compare_points(const std::vector<CheckPoint>& points, SelfCheck& check);

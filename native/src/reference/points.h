@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/progress.h"
 #include "reference/surface.h"
 
 namespace ajar {
@@ -24,8 +25,8 @@ class PointChooser {
 public:
     /// by_texel: all texels alike, else all surface alike. state: what is there when in doubt.
     PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state);
-    /// Throws Error where nothing can be chosen.
-    std::vector<ReferencePoint> choose(uint32_t count, uint64_t seed) const;
+    /// Fewer than count where hardly any place is in the open, none where nothing is. Throws Cancelled.
+    std::vector<ReferencePoint> choose(uint32_t count, uint64_t seed, const Progress& progress) const;
     /// Another place of the same texel, uniform over what its triangles cover.
     Place place_in_texel(const ReferencePoint& point, Pcg& random) const;
     bool is_buried(const Place& place) const;

@@ -72,7 +72,7 @@ ReferenceResult trace_reference(const Snapshot& scene, const Tracer& tracer, con
     const Lights lights(world, settings.weights);
     const PathTracer paths(world, lights, settings.bounces, settings.door_bounces, settings.weights);
     const PointChooser chooser(world, settings.by_texel, settings.whole_texels, {settings.weights});
-    const std::vector<ReferencePoint> points = chooser.choose(settings.points, settings.point_seed);
+    const std::vector<ReferencePoint> points = chooser.choose(settings.points, settings.point_seed, progress);
     const Integrator integrator{world, paths, chooser, settings};
     std::vector<Sums> sums(points.size());
     uint32_t done = 0;

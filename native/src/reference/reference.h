@@ -36,7 +36,8 @@ struct ReferenceResult {
 inline constexpr uint32_t kLeastBatches = 4; ///< fewer say too little of their spread
 
 /// Brute force: an irradiance at random places from independent paths, with nothing stored between
-/// them. The same for any number of threads unless the time limit ends it. Throws Cancelled.
+/// them. Fewer places than asked for, or none, where hardly any surface is in the open. The same for any
+/// number of threads unless the time limit ends it. Throws Cancelled.
 ReferenceResult trace_reference(const Snapshot& scene, const Tracer& tracer, const ReferenceSettings& settings,
                                 ThreadPool& pool, Progress& progress);
 
