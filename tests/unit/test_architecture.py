@@ -80,6 +80,42 @@ def test_a_folder_includes_only_folders_before_it():
     assert not back_edges
 
 
+FOLDER_TARGET = re.compile(r"^ajar_folder\((\w+) SOURCES [^)]*? LINK ([^)]*)\)", re.MULTILINE)
+
+
+def linked_folders():
+    """Folder -> those that its CMake target links by itself."""
+    text = (ROOT / "native" / "CMakeLists.txt").read_text(encoding="utf-8")
+    return {
+        name: {word[5:] for word in words.split() if word.startswith("ajar_") and word[5:] in ORDER}
+        for name, words in FOLDER_TARGET.findall(text)
+    }
+
+
+def included_folders(folder):
+    """Other folders that the files of one include."""
+    reached = {
+        folder_of(include, path) for path in (SOURCES / folder).iterdir() for include in includes(path)
+    }
+    return reached - {folder, None}
+
+
+def test_a_folder_links_what_it_includes():
+    assert linked_folders() == {name: included_folders(name) for name in ORDER}
+
+
+def test_the_judge_shares_the_scene_and_the_rays_with_the_baker_and_nothing_else():
+    """What judges the baker must not have the baker's faults."""
+    links, reached, open_ends = linked_folders(), set(), ["reference"]
+    while open_ends:
+        for name in links[open_ends.pop()] - reached:
+            reached.add(name)
+            open_ends.append(name)
+    assert reached == {"base", "scene", "accel"}
+    baker = {name for name in ORDER if "reference" in included_folders(name)}
+    assert baker == {"api"}, "nothing of the baker may lean on its judge"
+
+
 @pytest.mark.parametrize("library", WRAPPED)
 def test_a_library_is_included_only_by_its_wrapper(library):
     offenders = [
