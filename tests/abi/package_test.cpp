@@ -42,6 +42,7 @@ protected:
 TEST_F(PackageAbi, ManifestAndReportValidate) {
     ajar_settings s = kit::quick();
     s.keep_sh = 1;
+    s.check_points = 16;
     const kit::Bake bake(scene_, s);
     const std::string package = folder_.path("package");
     write(bake, package, R"({"preset": "preview", "deep": {"a": [1, 2]}})");

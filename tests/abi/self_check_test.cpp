@@ -4,12 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "scene_kit.h"
+#include "room_kit.h"
 
 namespace {
 
-/// A closed room with a lamp, a box in it.
-void build_room(kit::Scene& scene, bool lamp_in_set = false) {
+/// A closed room with a lamp, of a set unless that is AJAR_NONE; not committed.
+void build_room_in(kit::Scene& scene, uint32_t set) {
     const uint32_t grey = scene.diffuse({0.5f, 0.6f, 0.4f}), page = scene.page(48, 48);
     scene.instance(scene.mesh(kit::box({-2, -2, 0}, {2, 2, 3}, true)), grey, page, "room");
     ajar_light_desc lamp;
@@ -19,8 +19,13 @@ void build_room(kit::Scene& scene, bool lamp_in_set = false) {
     lamp.energy = 60.0f;
     lamp.size_x = 0.1f;
     const double at[12] = {1, 0, 0, 0.5, 0, 1, 0, 0.3, 0, 0, 1, 2.0};
-    if (lamp_in_set) scene.current_set = scene.element(AJAR_ELEMENT_LIGHT_SET, "lamps");
+    scene.current_set = set;
     scene.light(lamp, at);
+    scene.current_set = AJAR_NONE;
+}
+
+void build_room(kit::Scene& scene, bool lamp_in_set = false) {
+    build_room_in(scene, lamp_in_set ? scene.element(AJAR_ELEMENT_LIGHT_SET, "lamps") : AJAR_NONE);
     scene.commit();
 }
 
@@ -164,6 +169,56 @@ TEST(SelfCheck, BruteForceAgreesWithARightBake) {
     EXPECT_LT(check.at("far_share").get<double>(), 0.1);
     EXPECT_LT(check.at("bounce_gain").get<double>(), 0.8);
     EXPECT_TRUE(report.at("warnings").empty());
+}
+
+TEST(SelfCheck, LooksAtWhatIsStored) {
+    // A texel stores 65024 W/m^2 at most; the bake in memory knows no bound.
+    kit::Scene scene;
+    scene.instance(scene.mesh(kit::plane(1.0f, 0.0f, true)), scene.diffuse({0, 0, 0}), scene.page(16, 16), "floor");
+    scene.point_light({0, 0, 2}, 65024.0f * 2.0f * 16.0f * 9.8696f * 4.0f, 0.0f); // twice that below the lamp
+    scene.commit();
+    ajar_settings s = kit::settings(0, 64);
+    s.check_points = 64;
+    const kit::Bake bake(scene, s);
+    const nlohmann::json report = nlohmann::json::parse(bake.report());
+    EXPECT_GT(bake.layer(AJAR_LAYER_IRRADIANCE).at(8, 8, 0), 1.5f * 65024.0f);
+    EXPECT_LT(report.at("self_check").at("ratio").get<double>(), 0.9);
+    ASSERT_GE(report.at("warnings").size(), 1u);
+    EXPECT_NE(report.at("warnings")[0].at("text").get<std::string>().find("the stored light"), std::string::npos);
+}
+
+TEST(SelfCheck, JudgesElementsInSixStatesAndTellsThePackage) {
+    // A lamp of a set and another beside it, a lid over a part of the floor that can be hidden.
+    kit::Scene scene;
+    const uint32_t grey = scene.diffuse({0.6f, 0.5f, 0.4f}), lid = scene.element(AJAR_ELEMENT_TOGGLE, "lid");
+    build_room_in(scene, scene.element(AJAR_ELEMENT_LIGHT_SET, "lamps"));
+    scene.point_light({-1, -0.5f, 2.5f}, 20.0f, 0.1f);
+    scene.current_switch = lid;
+    scene.instance(scene.mesh(kit::box({-1, -1, 0.8f}, {0, 0, 0.9f}, false)), grey, AJAR_NONE, "lid");
+    scene.commit();
+    ajar_settings s = kit::settings(3, 1024);
+    s.combinations = AJAR_COMBINATIONS_ALL;
+    s.check_points = 256;
+    const kit::Bake bake(scene, s);
+    const nlohmann::json report = nlohmann::json::parse(bake.report());
+    const auto& check = report.at("self_check");
+    EXPECT_TRUE(report.at("warnings").empty()) << report.at("warnings");
+    ASSERT_EQ(check.at("states").size(), 5u) << "at the start all is on";
+    double most = 0.0;
+    for (const auto& state : check.at("states")) {
+        const double off = std::abs(state.at("ratio").get<double>() - 1.0), error = state.at("ratio_error");
+        EXPECT_GT(state.at("points").get<int>(), 50);
+        // Texels round to 1.6 % at most; what is shadowed in one state and not in another has more noise than told.
+        EXPECT_LT(off, 4.5 * error + 0.016) << state;
+        most = std::max(most, off);
+    }
+    EXPECT_LT(most, 0.05);
+    const kit::TempFolder folder;
+    kit::check(ajar_job_write_package(bake.handle(), folder.path("package").c_str(), nullptr));
+    const auto manifest = nlohmann::json::parse(kit::read_file(folder.path("package/manifest.json")));
+    EXPECT_EQ(manifest.at("self_check").at("ratio"), check.at("ratio"));
+    EXPECT_EQ(manifest.at("self_check").at("states"), check.at("states"));
+    EXPECT_FALSE(manifest.at("self_check").contains("seconds"));
 }
 
 TEST(SelfCheck, ABakeWithNoPlaceToLookAtIsKept) {

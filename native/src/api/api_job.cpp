@@ -2,6 +2,7 @@
 // ajar_job_*: check, guard, forward.
 #include <bit>
 
+#include "api/check_report.h"
 #include "api/guard.h"
 #include "api/tables.h"
 #include "package/package_writer.h"
@@ -262,6 +263,7 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
         if (extras != nullptr)
             content.extras =
                 *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
+        if (j->settings().check_points != 0) content.self_check = check_json(j->output().check).dump();
         content.light_patches = static_cast<LightPatchPlanes>(j->settings().light_patches);
         content.overlap_pictures = j->settings().overlap_pictures != 0;
         write_package(content, directory);

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "api/check_report.h"
 #include "api/effects.h"
 #include "api/job.h"
 #include "api/memory_report.h"
@@ -123,17 +124,6 @@ json receivers_json(const JobOutput& o) {
             {"range_clamped", o.pages.clamped_texels}};
 }
 
-json check_json(const SelfCheck& c) {
-    json out = {
-        {"bounce_gain", c.bounce_gain.gain}, {"bounce_gain_error", c.bounce_gain.error}, {"seconds", c.seconds}};
-    if (!c.not_checked.empty()) {
-        out["not_checked"] = c.not_checked;
-        return out;
-    }
-    out.update({{"points", c.points}, {"ratio", c.ratio}, {"ratio_error", c.ratio_error}, {"far_share", c.far_share}});
-    return out;
-}
-
 json memory_json(const MemoryParts& bytes_of) {
     json parts = json::object();
     for (const auto& [name, bytes] : bytes_of) parts[name] = bytes;
@@ -178,7 +168,7 @@ std::string make_report(const Job& job) {
         {"warnings", warnings},
         {"memory_bytes", peak_memory()},
         {"memory_parts", memory_json(memory_parts(job.scene(), o))}};
-    if (job.settings().check_points != 0) report["self_check"] = check_json(o.check);
+    if (job.settings().check_points != 0) report["self_check"] = check_report_json(o.check);
     return report.dump(2, ' ', false, json::error_handler_t::replace);
 }
 

@@ -149,7 +149,7 @@ void throw_io(const std::string& what, const fs::path& path, int error_number) {
         path.string());
 }
 
-void write_file_synced(const fs::path& path, std::span<const uint8_t> bytes) {
+void write_file(const fs::path& path, std::span<const uint8_t> bytes, bool synced) {
     Descriptor fd(path, O_WRONLY | O_CREAT | O_EXCL, "create");
     while (!bytes.empty()) {
         const ssize_t written = ::write(fd.get(), bytes.data(), bytes.size());
@@ -157,9 +157,11 @@ void write_file_synced(const fs::path& path, std::span<const uint8_t> bytes) {
         if (written <= 0) throw_io("write", path, written < 0 ? errno : ENOSPC);
         bytes = bytes.subspan(static_cast<size_t>(written));
     }
-    if (::fsync(fd.get()) != 0) throw_io("write", path, errno);
+    if (synced && ::fsync(fd.get()) != 0) throw_io("write", path, errno);
     if (fd.close() != 0) throw_io("write", path, errno);
 }
+
+void write_file_synced(const fs::path& path, std::span<const uint8_t> bytes) { write_file(path, bytes, true); }
 
 std::vector<uint8_t> read_file(const fs::path& path) {
     const Descriptor fd(path, O_RDONLY, "open");

@@ -13,6 +13,8 @@ namespace ajar {
 /// Error(AJAR_ERROR_IO): what failed, the path, the system's reason and what the user can do.
 [[noreturn]] void throw_io(const std::string& what, const std::filesystem::path& path, int error_number);
 
+/// Writes a new file; synced: and forces it to the disk.
+void write_file(const std::filesystem::path& path, std::span<const uint8_t> bytes, bool synced);
 /// Writes a new file and forces it to the disk.
 void write_file_synced(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 std::vector<uint8_t> read_file(const std::filesystem::path& path);

@@ -242,6 +242,7 @@ std::string manifest_json(const PackageContent& content, const TermsSummary* ter
     json["lights"] = Json::array();
     for (const PackageLight& light : content.lights) json["lights"].push_back(light_json(light));
     if (content.light_patches != LightPatchPlanes::none) json["light_patches"] = kLightPatchesFile;
+    if (!content.self_check.empty()) json["self_check"] = Json::parse(content.self_check);
     json["content_hash"] = content_hash(content);
     json["extras"] = parse_extras(content.extras);
     // Names come from the scene as they are; bytes that are not UTF-8 are replaced, not fatal.

@@ -62,14 +62,19 @@ std::optional<TermsFile> make_terms(const PackageContent& content) {
     return make_terms_file(content, sums);
 }
 
+void write_packed(const PackagePage& page, size_t index, const fs::path& folder, bool synced) {
+    const PageFiles files(index);
+    write_file(folder / files.packed_irradiance, irradiance_dds(page), synced);
+    write_file(folder / files.packed_direction, direction_dds(page), synced);
+}
+
 void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
     const PageFiles files(index);
     const uint32_t w = page.width, h = page.height;
     write_file_synced(folder / files.irradiance, encode_exr(w, h, {"R", "G", "B"}, page.irradiance));
     write_file_synced(folder / files.quality, encode_quality(page));
     if (!page.sh.empty()) write_file_synced(folder / files.sh, encode_exr(w, h, sh_channels(), page.sh));
-    write_file_synced(folder / files.packed_irradiance, irradiance_dds(page));
-    write_file_synced(folder / files.packed_direction, direction_dds(page));
+    write_packed(page, index, folder, true);
     write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
 }
 
@@ -153,6 +158,15 @@ void carry_over(const fs::path& existing, const fs::path& temporary) {
 }
 
 } // namespace
+
+void write_runtime_files(const PackageContent& content, const fs::path& folder) {
+    for (size_t i = 0; i < content.pages.size(); ++i) {
+        check_page(content.pages[i], i);
+        write_packed(content.pages[i], i, folder, false);
+    }
+    if (const std::optional<TermsFile> terms = make_terms(content))
+        write_file(folder / terms::kFileName, terms->bytes, false);
+}
 
 void write_package(const PackageContent& content, const fs::path& directory) {
     for (size_t i = 0; i < content.pages.size(); ++i) check_page(content.pages[i], i);

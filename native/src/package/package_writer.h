@@ -13,4 +13,8 @@ namespace ajar {
 /// AJAR_ERROR_ARGUMENT for arrays of wrong size, AJAR_ERROR_IO with path and remedy otherwise.
 void write_package(const PackageContent& content, const std::filesystem::path& directory);
 
+/// Writes those files of the package that the run-time library opens, byte for byte as write_package does, into an
+/// empty folder. Throws Error as write_package does.
+void write_runtime_files(const PackageContent& content, const std::filesystem::path& folder);
+
 } // namespace ajar

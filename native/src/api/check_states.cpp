@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "api/check_states.h"
+
+#include <algorithm>
+
+#include "reference/random.h"
+
+namespace ajar {
+
+namespace {
+
+constexpr uint64_t kStateStream = 0x57a7e5; ///< of random numbers, apart from those of points and paths
+constexpr int kRandomStates = 4;
+constexpr uint32_t kShareOfState = 4; ///< one in so many of the texels wished for
+
+} // namespace
+
+std::vector<CheckedState> states_to_check(const std::vector<Element>& elements, uint64_t seed) {
+    CheckedState start{"start", {}}, all_on{"all on", std::vector<float>(elements.size(), 1.0f)};
+    for (const Element& e : elements) start.weights.push_back(e.weight);
+    std::vector<CheckedState> out{start};
+    if (elements.empty()) return out;
+    if (all_on.weights != start.weights) out.push_back(all_on);
+    Pcg random(seed, kStateStream);
+    for (int i = 0; i < kRandomStates; ++i) {
+        CheckedState state{"random " + std::to_string(i + 1), {}};
+        for (const Element& e : elements) {
+            const float w = random.uniform();
+            state.weights.push_back(e.is_switch() && i < kRandomStates / 2 ? (w < 0.5f ? 0.0f : 1.0f) : w);
+        }
+        out.push_back(std::move(state));
+    }
+    return out;
+}
+
+uint32_t points_of_state(uint32_t wished, size_t states) {
+    return states <= 1 ? wished : std::max(1u, wished / kShareOfState);
+}
+
+} // namespace ajar
