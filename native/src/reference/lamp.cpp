@@ -22,10 +22,33 @@ float spot(const Light& l, const Vec3& w) {
     return cosine * t * t * (3.0f - 2.0f * t);
 }
 
-/// Radiance of an area lamp at an angle, over the one it would have without spread.
-float spread(const Light& l, float cosine) {
-    if (l.spread_tan == 0.0f) return 1.0f;
-    return std::max(0.0f, (l.spread_tan - std::tan(std::acos(std::min(cosine, 1.0f)))) * l.spread_scale);
+/// Radiance of an area lamp at an angle of the given tangent to its axis, over the one it would have without spread.
+float spread(const Light& l, float tangent) {
+    return l.spread_tan == 0.0f ? 1.0f : std::max(0.0f, (l.spread_tan - tangent) * l.spread_scale);
+}
+
+/// Even sample of the disk in the lamp's plane from which a point is lit, height (m) in front of it and from_center
+/// from its centre; nothing beside the lamp.
+LampPoint narrow(const Light& l, const Vec3& from_center, float height, Pcg& random) {
+    const Frame f = frame_from_normal(l.axis);
+    const Vec2 d = disk(random) * l.spread_tan;
+    const Vec3 beside = height * (d.x * f.x + d.y * f.y), at = from_center - height * l.axis + beside;
+    const Vec2 on_lamp{glm::dot(at, l.edge_x) / glm::dot(l.edge_x, l.edge_x),
+                       glm::dot(at, l.edge_y) / glm::dot(l.edge_y, l.edge_y)};
+    const bool ellipse = l.type == Light::Type::ellipse;
+    if (ellipse ? glm::length(on_lamp) > 0.5f : std::max(std::abs(on_lamp.x), std::abs(on_lamp.y)) > 0.5f) return {};
+    const Vec3 to = beside - height * l.axis;
+    const float distance = glm::length(to), cosine = height / distance;
+    // Over the disk's area: the height squared cancels with the distance's.
+    const float solid = kPi * l.spread_tan * l.spread_tan * cosine * cosine * cosine;
+    return {to / distance, distance, l.intensity * (solid * spread(l, glm::length(d)))};
+}
+
+/// Whether the lamp's edges and axis all meet at right angles.
+bool is_straight(const Light& l) {
+    const float size = std::max(glm::length(l.edge_x), glm::length(l.edge_y));
+    return std::abs(glm::dot(l.edge_x, l.edge_y)) < 1e-4f * size * size &&
+           std::abs(glm::dot(l.edge_x, l.axis)) + std::abs(glm::dot(l.edge_y, l.axis)) < 1e-4f * size;
 }
 
 /// A point lamp is a disk that faces p, of the intensity's flux.
@@ -45,6 +68,10 @@ LampPoint ball(const Light& l, const Vec3& p, Pcg& random) {
 }
 
 LampPoint area(const Light& l, const Vec3& p, Pcg& random) {
+    const float height = glm::dot(p - l.position, l.axis), lit = height * l.spread_tan;
+    if (l.spread_tan != 0.0f && height <= 0.0f) return {};
+    if (l.spread_tan != 0.0f && kPi * lit * lit < l.area && is_straight(l))
+        return narrow(l, p - l.position, height, random);
     Vec2 d = l.type == Light::Type::ellipse ? 0.5f * disk(random) : Vec2(random.uniform() - 0.5f);
     if (l.type == Light::Type::rectangle) d.y = random.uniform() - 0.5f;
     const Vec3 to = l.position + d.x * l.edge_x + d.y * l.edge_y - p;
@@ -52,7 +79,8 @@ LampPoint area(const Light& l, const Vec3& p, Pcg& random) {
     if (!(distance > 0.0f)) return {};
     const float cosine = -glm::dot(to, l.axis) / distance;
     if (!(cosine > 0.0f)) return {};
-    return {to / distance, distance, l.intensity * (l.area * cosine * spread(l, cosine) / (distance * distance))};
+    const float tangent = glm::length(to / distance + cosine * l.axis) / cosine;
+    return {to / distance, distance, l.intensity * (l.area * cosine * spread(l, tangent) / (distance * distance))};
 }
 
 LampPoint sun(const Light& l, Pcg& random) {

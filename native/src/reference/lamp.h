@@ -13,7 +13,7 @@ struct LampPoint {
     Vec3 light{0.0f};      ///< W/m^2 facing it, over the density of the point
 };
 
-/// Uniform point of the lamp's area.
+/// Uniform point of the lamp's area, or of the part of it that lights p.
 LampPoint lamp_point(const Light& lamp, const Vec3& p, Pcg& random);
 
 /// Roughly the light of a lamp at p on a surface with normal n: what lamps are chosen by.

@@ -168,9 +168,9 @@ float EmitterSet::cluster_importance(const Cluster& c, const Vec3& p, const Vec3
     return c.power * cosine * facing / std::max(distance2, 0.25f * c.radius * c.radius);
 }
 
-float EmitterSet::importance(uint32_t e, const Vec3& p, const Vec3& n) const {
+float EmitterSet::importance(uint32_t e, const Vec3& p, const Vec3& n, float reach) const {
     const Emitter& emitter = emitters_[e];
-    if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].importance(p, n);
+    if (emitter.kind == Kind::lamp) return scene_.lights[emitter.index].importance(p, n, reach);
     if (emitter.kind != Kind::sky) return cluster_importance(clusters_[emitter.index], p, n);
     return 0.25f * sky_->total();
 }

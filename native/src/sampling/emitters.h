@@ -57,8 +57,9 @@ public:
     std::vector<uint32_t> of_set(uint32_t set) const;
     /// When the emitter's surface is there; lamps and sky always are.
     Presence presence(uint32_t e) const;
-    /// Rough unshadowed irradiance at p with normal n; 0 only if it cannot light the surface.
-    float importance(uint32_t e, const Vec3& p, const Vec3& n) const;
+    /// Rough unshadowed irradiance at p with normal n; 0 only if it cannot light the surface. reach: m about p
+    /// in which a narrow lamp counts too.
+    float importance(uint32_t e, const Vec3& p, const Vec3& n, float reach = 0.0f) const;
     EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
     /// Emitter that samples this triangle, or kNone.
     uint32_t emitter_of(uint32_t triangle) const {

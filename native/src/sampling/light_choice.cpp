@@ -15,6 +15,14 @@ constexpr uint32_t kVisibilityRays = 16;               ///< per candidate and ti
 constexpr float kVisibilityFloor = 0.05f;
 constexpr float kUnseenShare = 0.25f; ///< of what the seen weigh that lamps seen by no ray may weigh together
 constexpr float kTileShare = 0.01f;   ///< of the tile's weight that each receiver keeps
+constexpr float kTexelReach = 0.75f;  ///< texel edges from a receiver's first position to its last
+
+/// Rough irradiance at a receiver from an emitter whose beam may be narrower than spacing texels.
+float importance_at(const EmitterSet& emitters, uint32_t emitter, const LightmapReceivers& receivers, uint32_t r,
+                    float spacing) {
+    return emitters.importance(emitter, receivers.origins(r)[0], receivers.frame[r].z,
+                               spacing * receivers.texel_size[r]);
+}
 
 } // namespace
 
@@ -39,11 +47,13 @@ void LightChoice::weigh_candidates(const LightmapReceivers& receivers, const Til
     if (candidates_.empty()) return;
     const auto pairs = kProbedPairs / static_cast<uint32_t>(candidates_.size());
     const uint32_t probes = std::min(std::clamp(pairs, kLeastProbes, kMostProbes), tile.count);
+    // Each probe speaks for the receivers about it: a narrow beam falls between them.
+    const float spacing = std::sqrt(static_cast<float>(tile.count) / static_cast<float>(probes));
     for (uint32_t i = 0; i < probes; ++i) {
         const uint32_t r = tile.first + static_cast<uint32_t>(uint64_t{i} * tile.count / probes);
         float here = 0.0f;
         for (Candidate& c : candidates_) {
-            c.running.push_back(emitters_.importance(c.emitter, receivers.origins(r)[0], receivers.frame[r].z));
+            c.running.push_back(importance_at(emitters_, c.emitter, receivers, r, spacing));
             here += c.running.back();
         }
         for (Candidate& c : candidates_) c.share += here > 0.0f ? c.running.back() / here : 0.0f;
@@ -148,8 +158,7 @@ uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& recei
         float* row = &running_[size_t{local} * (fine_ + 1)];
         float sum = 0.0f;
         for (uint32_t c = 0; c < fine_; ++c) {
-            const float here =
-                emitters_.importance(candidates_[c].emitter, receivers.origins(r)[0], receivers.frame[r].z);
+            const float here = importance_at(emitters_, candidates_[c].emitter, receivers, r, kTexelReach);
             row[c] = sum += (here + kTileShare * candidates_[c].weight) * visibility_[c];
         }
         row[fine_] = sum + rest;

@@ -38,8 +38,8 @@ struct Light {
     /// Samples the lamp from p with two numbers in [0,1).
     LightSample sample(const Vec3& p, const Vec2& u) const;
     /// Roughly the unshadowed irradiance luminance at p with unit normal n; 0 only if no part of
-    /// the lamp can light the surface.
-    float importance(const Vec3& p, const Vec3& n) const;
+    /// the lamp can light the surface. reach: m about p in which a narrow area lamp counts too.
+    float importance(const Vec3& p, const Vec3& n, float reach = 0.0f) const;
     void move(const DVec3& offset);
     /// A lamp without extent has one direction from each receiver.
     bool is_delta() const { return area == 0.0f && radius == 0.0f; }
