@@ -3,7 +3,6 @@
 #include "api/guard.h"
 #include "api/handles.h"
 #include "api/tables.h"
-#include "transport/lit_side.h"
 
 using namespace ajar;
 
@@ -80,11 +79,7 @@ AJAR_API ajar_result ajar_scene_set_sky(ajar_scene s, const ajar_sky_desc* d) {
 
 AJAR_API ajar_result ajar_scene_commit(ajar_scene s) {
     return guarded([&] {
-        const auto builder = scenes().get(s);
-        builder->commit();
-        ThreadPool pool(0);
-        Progress progress;
-        builder->turn(find_lit_sides(*builder->snapshot(), pool, progress));
+        scenes().get(s)->commit();
         return AJAR_OK;
     });
 }

@@ -68,7 +68,7 @@ void Job::bake(Progress& progress) {
     if (output_.receivers.count() == 0)
         throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
                     scene.name);
-    const SurfaceTable surfaces(scene);
+    const SurfaceTable surfaces(scene, tracer);
     const EmitterSet emitters(scene, pool, progress);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;

@@ -3,6 +3,8 @@
 
 #include <map>
 
+#include "accel/solids.h"
+
 namespace ajar {
 
 namespace {
@@ -13,10 +15,14 @@ constexpr float kClearance = 10.0f; ///< ray offsets between a face and what is 
 } // namespace
 
 SwitchSolids::SwitchSolids(const Snapshot& scene, const Tracer& tracer) : scene_(scene), tracer_(tracer) {
+    if (!scene.has_switches()) return;
+    const std::vector<Behind> behind = find_solids(scene, tracer);
     std::map<uint32_t, Box> of_instance;
     for (const Triangle& t : scene.triangles) {
         const Instance& instance = scene.instances[t.instance];
-        if (instance.element == kNoElement || instance.hollow || (scene.ray_mask(t) & kMaskGatherSwitch) == 0) continue;
+        if (instance.element == kNoElement || behind[t.instance] == Behind::room ||
+            (scene.ray_mask(t) & kMaskGatherSwitch) == 0)
+            continue;
         const Vec3 first = scene.positions[t.vertex[0]];
         Box& box = of_instance.try_emplace(t.instance, Box{first, first}).first->second;
         for (const uint32_t v : t.vertex)

@@ -83,7 +83,7 @@ bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
                     walk.through * sky.radiance(direction) * (kPi * lights_.ray_share_of_sky(direction, cosine));
             return false;
         }
-        if (world_.is_inside(hit)) return false;
+        if (world_.is_dead(hit)) return false;
         const SurfaceSample s = world_.scene.surface(hit.triangle, hit.u, hit.v);
         if (max_component(s.emission) > 0.0f) add_emission(walk, ray, hit, s.emission, cosine);
         const float back = luminance(s.reflectance), on = luminance(s.transmittance);

@@ -135,15 +135,17 @@ PointChooser::View PointChooser::view_from(const Place& p) const {
     return view;
 }
 
-/// Inside a thing that stands there: most ways lead to the inside of a solid, or all of them to backs. One
-/// way is not enough, as it may end where that thing touches another.
+/// Inside a thing that stands there: most ways lead to the inside of a solid, or all of them to backs close by; backs
+/// far away are walls and roofs of single sheets. One way is not enough, as it may end where that thing touches
+/// another.
 bool PointChooser::is_buried(const Place& p) const {
     const View view = view_from(p);
+    const float near = kNearBack * texel_edge(world_.scene, p.triangle);
     int backs = 0, inside = 0;
     for (const Vec3& w : {Vec3(0.1f, 0.2f, 0.97f), Vec3(0.6f, -0.5f, 0.62f), Vec3(-0.7f, 0.3f, 0.65f)}) {
         const Hit hit = world_.meet(view.along(glm::normalize(w)), view.state);
         if (hit.triangle == kMiss || !hit.back) continue;
-        ++backs;
+        backs += hit.t < near;
         inside += world_.is_inside(hit);
     }
     return inside >= 2 || backs == 3;

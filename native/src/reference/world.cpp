@@ -2,7 +2,6 @@
 #include "reference/world.h"
 
 #include "base/hash.h"
-#include "scene/mesh_patch.h"
 
 namespace ajar {
 
@@ -14,16 +13,7 @@ bool SceneState::is_there(const Presence& p) const {
 }
 
 World::World(const Snapshot& s, const Tracer& t)
-    : scene(s), tracer(t), dead_back_(s.triangles.size()), has_switches_(s.has_switches()) {
-    std::vector<uint8_t> closed;
-    for (const Mesh& m : s.meshes) closed.push_back(find_patches(m).closed);
-    for (size_t i = 0; i < s.triangles.size(); ++i) {
-        const Material& material = s.materials[s.triangles[i].material];
-        const Instance& instance = s.instances[s.triangles[i].instance];
-        const bool solid = closed[instance.mesh] != 0 && !instance.hollow && !material.transmits;
-        dead_back_[i] = solid || material.one_sided;
-    }
-}
+    : scene(s), tracer(t), behind_(find_solids(s, t)), has_switches_(s.has_switches()) {}
 
 Hit World::meet(const Ray& ray, const SceneState& state) const {
     const Hit fixed = tracer.intersect(ray, kMaskGather);

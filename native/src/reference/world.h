@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "accel/embree_scene.h"
+#include "accel/solids.h"
 
 namespace ajar {
 
@@ -30,15 +30,21 @@ public:
     Hit meet(const Ray& ray, const SceneState& state) const;
     /// What is left of light along a shadow ray.
     Vec3 transmittance(const Ray& ray, const SceneState& state) const;
-    /// A back that sends nothing: of a one-sided surface, or the inside of a solid.
-    bool is_inside(const Hit& hit) const { return hit.back && has_dead_back(hit.triangle); }
-    bool has_dead_back(uint32_t triangle) const { return dead_back_[triangle] != 0; }
+    /// A back that sends nothing, of a one-sided surface.
+    bool is_dead(const Hit& hit) const { return hit.back && has_dead_back(hit.triangle); }
+    bool has_dead_back(uint32_t triangle) const {
+        return scene.materials[scene.triangles[triangle].material].one_sided;
+    }
+    /// Seen from inside a thing: a dead back, or a back of a solid.
+    bool is_inside(const Hit& hit) const {
+        return is_dead(hit) || (hit.back && behind_[scene.triangles[hit.triangle].instance] == Behind::solid);
+    }
 
     const Snapshot& scene;
     const Tracer& tracer;
 
 private:
-    std::vector<uint8_t> dead_back_; ///< per triangle
+    std::vector<Behind> behind_; ///< per instance
     bool has_switches_;
 };
 

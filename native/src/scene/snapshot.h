@@ -39,7 +39,6 @@ struct Instance {
     uint32_t element = kNoElement;   ///< door or toggle it is a part of
     bool open_pose = false;          ///< door: there while it is open, not while it is closed
     uint32_t light_set = kNoElement; ///< of its emission
-    bool hollow = false;             ///< light shines inside: what it encloses is a room, not a solid
 };
 
 /// One world-space triangle of the flattened scene.
@@ -48,7 +47,7 @@ struct Triangle {
     uint32_t instance;
     uint32_t source; ///< triangle of the instance's mesh
     uint32_t material;
-    bool mirrored; ///< the normal is minus the cross product: the instance turns the winding, or the back is baked
+    bool mirrored; ///< the normal is minus the cross product: the instance turns the winding
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.
@@ -61,12 +60,6 @@ enum RayMask : uint32_t {
     kMaskSwitch = kMaskShadowSwitch | kMaskGatherSwitch,
     kMaskGatherAll = kMaskGather | kMaskGatherSwitch,
     kMaskWall = kMaskShadowOpaque | kMaskShadowSwitch ///< what parts the light of neighbouring texels
-};
-
-/// Which sides of surfaces hold their lightmap.
-struct SurfaceSides {
-    std::vector<uint8_t> turned; ///< per triangle: the side its normal points away from
-    std::vector<uint8_t> hollow; ///< per instance: Instance::hollow
 };
 
 struct Page {

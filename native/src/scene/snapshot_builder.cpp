@@ -384,21 +384,4 @@ void SnapshotBuilder::commit() {
     committed_ = true;
 }
 
-void SnapshotBuilder::turn(const SurfaceSides& sides) {
-    Snapshot& s = *snapshot_;
-    std::vector<size_t> count(s.instances.size(), 0);
-    for (size_t t = 0; t < s.triangles.size(); ++t) {
-        if (sides.turned[t] == 0) continue;
-        s.triangles[t].mirrored = !s.triangles[t].mirrored;
-        ++count[s.triangles[t].instance];
-    }
-    for (size_t i = 0; i < count.size(); ++i) {
-        s.instances[i].hollow = sides.hollow[i] != 0;
-        if (count[i] != 0)
-            warn(s.instances[i].name, "the normals of " + std::to_string(count[i]) +
-                                          " triangles point away from where they are seen; their back is baked. "
-                                          "Flip the normals to choose the side yourself");
-    }
-}
-
 } // namespace ajar

@@ -23,9 +23,6 @@ public:
     void set_sky(const ajar_sky_desc& desc);
     /// Flattens instances into world space and freezes the scene; no add after it.
     void commit();
-    /// Turns the surfaces of a committed scene to the sides that hold their lightmap, with a warning
-    /// for each object.
-    void turn(const SurfaceSides& sides);
 
     bool committed() const { return committed_; }
     const std::vector<Warning>& warnings() const { return snapshot_->warnings; }

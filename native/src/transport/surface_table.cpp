@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport/surface_table.h"
 
+#include "accel/solids.h"
 #include "receiver/uv_raster.h"
-#include "scene/mesh_patch.h"
 
 namespace ajar {
 
-SurfaceTable::SurfaceTable(const Snapshot& scene) : entries_(scene.triangles.size()), flags_(scene.triangles.size()) {
-    std::vector<uint8_t> closed(scene.meshes.size());
-    for (size_t m = 0; m < closed.size(); ++m) closed[m] = find_patches(scene.meshes[m]).closed;
+SurfaceTable::SurfaceTable(const Snapshot& scene, const Tracer& tracer)
+    : entries_(scene.triangles.size()), flags_(scene.triangles.size()) {
+    const std::vector<Behind> behind = find_solids(scene, tracer);
     for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const Triangle& t = scene.triangles[i];
         const Material& material = scene.materials[t.material];
@@ -17,7 +17,7 @@ SurfaceTable::SurfaceTable(const Snapshot& scene) : entries_(scene.triangles.siz
         f |= material.transmits ? kTransmits : 0;
         f |= material.one_sided ? kOneSided : 0;
         f |= t.mirrored ? kMirrored : 0;
-        f |= closed[instance.mesh] && !instance.hollow && !material.transmits ? kSolid : 0;
+        f |= behind[t.instance] == Behind::solid ? kSolid : 0;
         f |= instance.lightmapped ? 0 : kUnmapped;
         if (instance.lightmapped) {
             const auto uv = texel_triangle(scene, i);

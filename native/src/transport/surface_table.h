@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "accel/ray.h"
+#include "accel/embree_scene.h"
 #include "base/parallel.h"
 
 namespace ajar {
@@ -23,9 +23,9 @@ public:
         kUnmapped = 4, ///< no lightmap: its light is estimated at the hit
         kOneSided = 8,
         kMirrored = 16, ///< the normal is minus the cross product
-        kSolid = 32     ///< closed mesh: nothing is seen from inside
+        kSolid = 32     ///< of a solid (find_solids): receivers inside are not seen
     };
-    explicit SurfaceTable(const Snapshot& scene);
+    SurfaceTable(const Snapshot& scene, const Tracer& tracer);
 
     uint8_t flags(uint32_t triangle) const { return flags_[triangle]; }
     const Entry& entry(uint32_t triangle) const { return entries_[triangle]; }
