@@ -279,6 +279,17 @@ OBJECT_FIELDS = (
         "texel_scale", "float", 1.0, 0.001, 1000.0, "", "Factor of the scene's texel density", "Texel scale"
     ),
     Field(
+        "bake_side",
+        "enum",
+        "FRONT",
+        description="Side of its surfaces whose light the lightmap holds",
+        label="Bake side",
+        items=(
+            ("FRONT", "Front", "The side that the normals point to"),
+            ("BACK", "Back", "The other side, as if the normals were flipped"),
+        ),
+    ),
+    Field(
         "movable",
         "enum",
         "FIXED",

@@ -20,6 +20,7 @@ EXTEND = {"repeat": 0, "edge": 1, "clip": 2}
 CHANNEL = {"rgb": 0, "r": 1, "g": 2, "b": 3, "a": 4}
 CLOSURE = {"diffuse": 0, "principled": 1, "emission": 2, "transparent": 3}
 SURFACE = {"lightmap": 0, "occluder": 1}
+SIDE = {"front": 0, "back": 1}
 VISIBLE = {"gather": 1, "shadow": 2}
 LIGHT = {"point": 0, "spot": 1, "sun": 2, "rectangle": 3, "ellipse": 4}
 ELEMENT = {"light_set": 0, "door": 1, "toggle": 2}
@@ -131,6 +132,7 @@ class InstanceDesc(c.Structure):
         ("element", u32),
         ("open_pose", u32),
         ("light_set", u32),
+        ("bake_side", u32),
     ]
 
 

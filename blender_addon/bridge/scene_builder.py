@@ -177,6 +177,7 @@ class SceneBuilder:
         desc.uv_offset[:] = item.get("uv_offset", (0, 0))
         desc.element, desc.open_pose = _id(item.get("element")), int(item.get("open_pose", False))
         desc.light_set = _id(item.get("light_set"))
+        desc.bake_side = abi.SIDE[item.get("bake_side", "front")]
         self._add("instance", desc)
 
     def _light(self, item):

@@ -229,6 +229,8 @@ class _Extraction:
                 uv_scale=list(place["scale"]),
                 uv_offset=list(place["offset"]),
             )
+            if obj.ajar.bake_side == "BACK":
+                record["bake_side"] = "back"
         glows = any(self.materials.emits(m) for m in record["materials"])
         self.elements.link_movable(record, obj, placed.instancer, placed.occurrence)
         self.elements.link_glow(record, obj, placed.instancer, glows)

@@ -41,6 +41,9 @@ class AJAR_PT_object(Properties, Panel):
             row = column.row()
             row.enabled = obj.ajar.surface in {"AUTO", "LIGHTMAP"}
             row.prop(obj.ajar, "texel_scale")
+            row = column.row()
+            row.enabled = obj.ajar.surface in {"AUTO", "LIGHTMAP"}
+            row.prop(obj.ajar, "bake_side")
         if obj.type != "EMPTY" or obj.instance_type == "COLLECTION":
             _draw_light_set(column, obj.ajar, context)
         column.separator()

@@ -43,6 +43,7 @@ OBJECT = {
     "light_set",
     "surface",
     "texel_scale",
+    "bake_side",
     "movable",
     "open_pose",
     "bounce_when_closed",

@@ -41,6 +41,7 @@ void EngineFuzz::add_instance(ajar_scene scene) {
     if (chance(0.4)) d.element = mostly(1 + pick(2), 0.9);
     d.open_pose = chance(0.2);
     if (chance(0.3)) d.light_set = mostly(0, 0.9);
+    if (chance(0.3)) d.bake_side = mostly(1, 0.9);
     uint32_t id;
     note(ajar_scene_add_instance(scene, maybe(&d), maybe(&id)));
 }

@@ -204,4 +204,45 @@ TEST(BakedSide, TexelsUnderAClosedCrateStayInvalidAndThoseInALitRoomDoNot) {
     EXPECT_EQ(valid_share(true), 1.0);
 }
 
+/// A lamp in a box whose normals point out of it, or into it where flipped.
+struct LitBox {
+    kit::Scene scene;
+    explicit LitBox(uint32_t side, bool flipped = false, bool one_sided = false) {
+        kit::MeshData shell = kit::box({-2, -2, 0}, {2, 2, 3}, false);
+        for (size_t t = 0; flipped && t < shell.corners.size(); t += 3)
+            std::swap(shell.corners[t + 1], shell.corners[t + 2]), std::swap(shell.uv[t + 1], shell.uv[t + 2]);
+        scene.bake_side = side;
+        ajar_closure white;
+        ajar_closure_init(&white);
+        white.type = AJAR_CLOSURE_DIFFUSE;
+        scene.instance(scene.mesh(shell), scene.material({white}, one_sided), scene.page(48, 32), "box");
+        scene.point_light({0.3f, 0.2f, 1.5f}, 50.0f);
+        scene.commit();
+    }
+};
+
+TEST(BakedSide, BackIsWhatFlippedNormalsAre) {
+    ajar_settings settings = kit::settings(2);
+    settings.keep_sh = 1;
+    const kit::Bake back(LitBox(AJAR_SIDE_BACK).scene, settings),
+        flipped(LitBox(AJAR_SIDE_FRONT, true).scene, settings);
+    for (const uint32_t layer : {AJAR_LAYER_IRRADIANCE, AJAR_LAYER_SH}) {
+        const kit::Layer a = back.layer(layer), b = flipped.layer(layer);
+        for (uint32_t c = 0; c < a.channels; ++c) {
+            SCOPED_TRACE(testing::Message() << layer << ' ' << c);
+            const double level = kit::mean(b, 0);
+            EXPECT_GT(level, 0.5);
+            EXPECT_NEAR(kit::mean(a, c), kit::mean(b, c), 1e-3 * level);
+        }
+    }
+    EXPECT_EQ(valid_mean(kit::Bake(LitBox(AJAR_SIDE_FRONT).scene, kit::settings(2))), 0.0);
+}
+
+TEST(BakedSide, CulledBackIsNotBakedAndIsNamed) {
+    const LitBox culled(AJAR_SIDE_BACK, false, true);
+    EXPECT_TRUE(
+        kit::has_warning(kit::scene_warnings(culled.scene), "box", "12 triangles have materials with backface"));
+    EXPECT_EQ(valid_mean(kit::Bake(culled.scene, kit::settings(2))), 0.0);
+}
+
 } // namespace

@@ -58,6 +58,7 @@ public:
     /// Elements that the next instances and lights belong to; AJAR_NONE for none.
     uint32_t current_switch = AJAR_NONE, current_set = AJAR_NONE;
     bool open_pose = false;
+    uint32_t bake_side = AJAR_SIDE_FRONT; ///< of the next instances
     void sky(Float3 radiance);
     /// Equirectangular image (see ajar_sky_desc) times radiance.
     void sky_image(uint32_t texture, Float3 radiance);

@@ -157,6 +157,7 @@ typedef struct ajar_element_desc {
 
 enum { AJAR_SURFACE_LIGHTMAP = 0, AJAR_SURFACE_OCCLUDER = 1 };
 enum { AJAR_VISIBLE_GATHER = 1, AJAR_VISIBLE_SHADOW = 2 };
+enum { AJAR_SIDE_FRONT = 0, AJAR_SIDE_BACK = 1 };
 
 /* A placed mesh. Lightmapped instances name their page; page UV = uv * uv_scale + uv_offset. */
 typedef struct ajar_instance_desc {
@@ -175,6 +176,8 @@ typedef struct ajar_instance_desc {
     uint32_t element;   /* door or toggle this is a part of, or AJAR_NONE */
     uint32_t open_pose; /* 1: part of a door that is there while it is open; 0: the closed leaf */
     uint32_t light_set; /* light set that its emission belongs to, or AJAR_NONE */
+    uint32_t bake_side; /* AJAR_SIDE_*: whose light a lightmap holds, of the side that the normals point to or of the
+                         * other; tangent frames turn with it. One-sided materials have a front only. */
 } ajar_instance_desc;
 
 enum {

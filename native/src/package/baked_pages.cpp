@@ -140,8 +140,12 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
     }
     for (const Instance& i : scene.instances)
         if (i.lightmapped)
-            c.instances.push_back(
-                {i.name, i.page, {i.uv_scale.x, i.uv_scale.y}, {i.uv_offset.x, i.uv_offset.y}, "AjarLightmap"});
+            c.instances.push_back({i.name,
+                                   i.page,
+                                   {i.uv_scale.x, i.uv_scale.y},
+                                   {i.uv_offset.x, i.uv_offset.y},
+                                   "AjarLightmap",
+                                   i.bake_back});
     for (const Element& e : scene.elements) c.elements.push_back({e.name, kind_name(e.kind), e.weight});
     for (const Light& l : scene.lights)
         c.lights.push_back({l.name, l.primary ? "primary" : "static",

@@ -78,6 +78,7 @@ Json instance_json(const PackageInstance& instance) {
     json["uv_layer"] = instance.uv_layer;
     json["uv_scale"] = {instance.uv_scale[0], instance.uv_scale[1]};
     json["uv_offset"] = {instance.uv_offset[0], instance.uv_offset[1]};
+    if (instance.back) json["side"] = "back";
     return json;
 }
 
@@ -219,6 +220,7 @@ std::string content_hash(const PackageContent& content) {
         hash.add(instance.page);
         hash.add_bytes(instance.uv_scale, sizeof instance.uv_scale);
         hash.add_bytes(instance.uv_offset, sizeof instance.uv_offset);
+        if (instance.back) hash.add(uint32_t{AJAR_SIDE_BACK});
     }
     hash_terms(hash, content);
     char text[32];

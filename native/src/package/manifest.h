@@ -30,6 +30,7 @@ struct PackageInstance {
     float uv_scale[2] = {1.0f, 1.0f};
     float uv_offset[2] = {0.0f, 0.0f};
     std::string uv_layer = "AjarLightmap";
+    bool back = false; ///< its lightmap is of the side that the normals point away from
 };
 
 struct PackageLight {

@@ -39,6 +39,7 @@ struct Instance {
     uint32_t element = kNoElement;   ///< door or toggle it is a part of
     bool open_pose = false;          ///< door: there while it is open, not while it is closed
     uint32_t light_set = kNoElement; ///< of its emission
+    bool bake_back = false;          ///< its lightmap holds the light of the side that its normals point away from
 };
 
 /// One world-space triangle of the flattened scene.
@@ -47,7 +48,7 @@ struct Triangle {
     uint32_t instance;
     uint32_t source; ///< triangle of the instance's mesh
     uint32_t material;
-    bool mirrored; ///< the normal is minus the cross product: the instance turns the winding
+    bool mirrored; ///< the normal is minus the cross product: the instance turns the winding, or the back is baked
 };
 
 /// Which rays a triangle stops. Shadow rays treat opaque and transmissive surfaces apart.

@@ -222,6 +222,7 @@ uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
     require(d.mesh < snapshot_->meshes.size(), AJAR_ERROR_ARGUMENT, "names a mesh that was not added", i.name);
     require(d.material_count == 0 || d.materials != nullptr, AJAR_ERROR_ARGUMENT, "material list is missing", i.name);
     require(d.surface <= AJAR_SURFACE_OCCLUDER, AJAR_ERROR_ARGUMENT, "unknown kind of surface", i.name);
+    require(d.bake_side <= AJAR_SIDE_BACK, AJAR_ERROR_ARGUMENT, "unknown side to bake", i.name);
     i.mesh = d.mesh;
     i.transform = affine_of(d.transform, i.name);
     i.materials.assign(d.materials, d.materials + d.material_count);
@@ -238,6 +239,7 @@ uint32_t SnapshotBuilder::add_instance(const ajar_instance_desc& d) {
     i.element = d.element;
     i.open_pose = d.open_pose != 0;
     i.light_set = d.light_set;
+    i.bake_back = i.lightmapped && d.bake_side == AJAR_SIDE_BACK;
     require(!i.open_pose || (i.element != AJAR_NONE && snapshot_->elements[i.element].kind == ElementKind::door),
             AJAR_ERROR_ARGUMENT, "is the open pose of no door", i.name);
     snapshot_->instances.push_back(std::move(i));
@@ -344,7 +346,7 @@ void SnapshotBuilder::flatten(uint32_t index) {
             "the scene has more than 4 billion vertices", i.name);
     for (const Vec3& p : mesh.positions) s.positions.push_back(Vec3(i.transform.point(DVec3(p)) - s.origin));
     const bool mirrored = i.transform.determinant() < 0.0;
-    size_t broken = 0, flat = 0;
+    size_t broken = 0, flat = 0, culled = 0;
     for (uint32_t t = 0; t < mesh.triangle_count(); ++t) {
         const uint32_t* v = &mesh.corner_vertex[3 * size_t{t}];
         if (!is_finite(mesh.positions[v[0]]) || !is_finite(mesh.positions[v[1]]) || !is_finite(mesh.positions[v[2]])) {
@@ -353,7 +355,9 @@ void SnapshotBuilder::flatten(uint32_t index) {
         }
         const uint32_t slot = mesh.triangle_slot.empty() ? 0 : mesh.triangle_slot[t];
         const uint32_t material = i.materials[std::min<size_t>(slot, i.materials.size() - 1)];
-        s.triangles.push_back({{base + v[0], base + v[1], base + v[2]}, index, t, material, mirrored});
+        const bool turned = i.bake_back && !s.materials[material].one_sided;
+        culled += i.bake_back && !turned;
+        s.triangles.push_back({{base + v[0], base + v[1], base + v[2]}, index, t, material, mirrored != turned});
         if (!(s.area(static_cast<uint32_t>(s.triangles.size() - 1)) > 0.0f)) s.triangles.pop_back(), ++flat;
     }
     for (size_t p = base; p < s.positions.size(); ++p)
@@ -361,6 +365,10 @@ void SnapshotBuilder::flatten(uint32_t index) {
     if (broken != 0)
         warn(i.name, std::to_string(broken) +
                          " triangles have a vertex that is not finite and are left out; fix or delete those vertices");
+    if (culled != 0)
+        warn(i.name, "has its back baked, but " + std::to_string(culled) +
+                         " triangles have materials with backface culling, which show no back; their front is baked. "
+                         "Turn Backface Culling off, or flip the normals");
     if (flat != 0) warn(i.name, std::to_string(flat) + " triangles have no area and are left out");
 }
 
