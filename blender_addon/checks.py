@@ -26,7 +26,7 @@ def check_scene(context, output=True):
         *_images(objects),
         *checks_elements.check(context),
     ]
-    findings += _last_layout(scene)
+    findings += [*_last_layout(scene), *_last_sides(scene)]
     return sorted(findings, key=lambda finding: finding.level != "ERROR")
 
 
@@ -170,3 +170,14 @@ def _last_layout(scene):
     for culprit, text in record.read_record(scene).get("warnings", []):
         if "overlap" in text.lower():
             yield warning(culprit, text + " (last bake)", "Turn off Keep Lightmap UVs and bake again")
+
+
+def _last_sides(scene):
+    """Objects that the last bake found to look flipped. What was set to Back since then is left out."""
+    for culprit, text in record.read_record(scene).get("warnings", []):
+        problem, mark, remedy = text.partition(". Flip ")
+        if "flipped" not in problem or not mark:
+            continue
+        obj = scene.objects.get(culprit)
+        if obj is None or obj.ajar.bake_side == "FRONT":
+            yield warning(culprit, problem + " (last bake)", "Flip " + remedy)

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "encode/ahd.h"
+#include "pass/flipped_sides.h"
 #include "pass/term_bake.h"
 #include "pass/twin_check.h"
 
@@ -68,6 +69,7 @@ void Job::bake(Progress& progress) {
     if (output_.receivers.count() == 0)
         throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
                     scene.name);
+    for (Warning& w : find_flipped_sides(scene, tracer, pool, progress)) output_.warnings.push_back(std::move(w));
     const SurfaceTable surfaces(scene, tracer);
     const EmitterSet emitters(scene, pool, progress);
     output_.emissive_triangles = emitters.emissive_triangles();
