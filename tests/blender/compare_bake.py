@@ -3,19 +3,17 @@
 
     python3 tests/blender/compare_bake.py --package DIR/package --reference REF.npz [--out DIR]
             [--tolerance 0.05] [--sigma 1] [--max-back 0.25] [--worst 20]
-            [--report DIR/report.json [--max-turned 8]] [--require-mean 0.01] [--require-share 0.95]
+            [--require-mean 0.01] [--require-share 0.95]
 
 A texel agrees if its luminance differs by at most tolerance * reference + sigma * the combined
 standard error of both bakes. Compared are texels that Ajar calls valid, that Cycles baked and that
 lie in exactly one triangle. Left out, unless --max-back 1, are texels that look into solids (more than
 a quarter of their rays meet back faces) or that coincide with an opposite face: there the two differ
-by intent. With --report, neither are objects that Ajar bakes on their back because they are seen from
-there: Cycles bakes the front. With --require-* the exit code tells whether the bakes agree.
+by intent. With --require-* the exit code tells whether the bakes agree.
 """
 import argparse
 import json
 import os
-import re
 import sys
 
 import numpy as np
@@ -211,34 +209,10 @@ def parse():
     parser.add_argument('--tolerance', type=float, default=0.05)
     parser.add_argument('--sigma', type=float, default=1.0)
     parser.add_argument('--max-back', type=float, default=0.25)
-    parser.add_argument('--report', help="report.json of the Ajar bake: names objects baked on their back")
-    parser.add_argument(
-        '--max-turned', type=int, default=8, help="with --report: leave out objects with more such triangles"
-    )
     parser.add_argument('--worst', type=int, default=20)
     parser.add_argument('--require-mean', type=float, help="largest |mean ratio - 1|")
     parser.add_argument('--require-share', type=float, help="smallest share of agreeing texels")
     return parser.parse_args()
-
-
-def turned_objects(report, most):
-    """Names of objects of which more than `most` triangles are baked on their back, where Ajar found
-    them to be seen from; Cycles bakes the front of everything."""
-    with open(report, encoding='utf-8') as file:
-        warnings = json.load(file)['warnings']
-    found = [(w['culprit'], re.match(r'the normals of (\d+) triangles', w['text'])) for w in warnings]
-    return {name for name, match in found if match and int(match[1]) > most}
-
-
-def leave_out(pages, meta, names):
-    """Take the named objects out of the comparison; returns how many texels that were."""
-    out = [index for index, name in enumerate(meta['objects']) if name in names]
-    count = 0
-    for page in pages:
-        mask = page.valid & np.isin(page.object, out)
-        page.valid &= ~mask
-        count += int(mask.sum())
-    return count
 
 
 def load(package, reference_path, max_back=0.25):
@@ -260,10 +234,6 @@ def failed(summary, args):
 def main():
     args = parse()
     pages, meta = load(args.package, args.reference, args.max_back)
-    if args.report:
-        names = turned_objects(args.report, args.max_turned)
-        count = leave_out(pages, meta, names)
-        print(f"left out {count} texels of objects seen from behind: {', '.join(sorted(names)) or 'none'}")
     texels = Texels(pages)
     if not len(texels.a):
         sys.exit("no texel to compare")
