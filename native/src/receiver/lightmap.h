@@ -43,6 +43,8 @@ struct LightmapReceivers {
     std::vector<uint32_t> coarse_from;
     std::vector<uint32_t> moved_row;  ///< [count] row of moved or kNoReceiver; empty: nothing is moved
     std::vector<MovedPosition> moved; ///< [rows][positions_per_texel]
+    std::vector<uint32_t> plane_row;  ///< [count] row of planes or kNoReceiver; empty: no shading normal leans
+    std::vector<Vec3> planes;         ///< [rows][positions_per_texel] geometric normals where shading normals lean
     uint64_t clamped_albedo = 0;      ///< receivers whose reflectance reached kMaxReflectance
     uint64_t pushed_positions = 0;
 
@@ -52,6 +54,17 @@ struct LightmapReceivers {
     MovedPosition moved_from(uint32_t receiver, uint32_t position) const {
         if (!has_moved(receiver)) return {};
         return moved[size_t{moved_row[receiver]} * positions_per_texel + position];
+    }
+    /// Whether the shading normal leans from the geometric normal of some position.
+    bool leans(uint32_t receiver) const { return !plane_row.empty() && plane_row[receiver] != kNoReceiver; }
+    /// Unit normal of the surface itself under a position of a receiver that leans.
+    const Vec3& plane(uint32_t receiver, uint32_t position) const {
+        return planes[size_t{plane_row[receiver]} * positions_per_texel + position];
+    }
+    /// Whether direction w leaves the surface. What comes from below it brings no light, whatever the shading normal
+    /// says: there the surface would light itself (the rule of Cycles).
+    bool is_above(uint32_t receiver, uint32_t position, const Vec3& w) const {
+        return !leans(receiver) || glm::dot(plane(receiver, position), w) > 0.0f;
     }
     /// Where the first position is while all switchable things are there.
     Vec3 shown_origin(uint32_t receiver) const {

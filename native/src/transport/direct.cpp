@@ -89,11 +89,12 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     if (!start_at(r, position, packet, lane, p)) return false;
     const EmitterSample s = g.emitters.sample(emitter, p, {u, spread.x});
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
-    if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f)) return false;
+    if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f) || !g.receivers.is_above(r, position, s.direction))
+        return false;
     const float own = static_cast<float>(samples) * s.pdf * chance;
     float rays = mis.gather * hemisphere_pdf(w.z, mis.share); // per steradian
     if (mis.aims != nullptr) rays += mis.aims->density(local, position, s.direction);
-    const float weight = s.pdf > 0.0f ? own / (own + rays) : near_lamp_factor(g.receivers, r, p, s);
+    const float weight = s.pdf > 0.0f ? own / (own + rays) : near_lamp_factor(g.receivers, r, position, p, s);
     packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;

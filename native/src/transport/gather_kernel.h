@@ -95,12 +95,20 @@ struct Gatherer {
         Flight& f = flights[turn];
         for (uint32_t lane = 0; lane < kLanes; ++lane) f.valid[lane] = lane < count ? -1 : 0;
         tile_rays.aim(first, stratum, f.packet, f.local, f.position);
+        if (!g.receivers.plane_row.empty()) leave_out_below(first, count, f);
         if (o.aims != nullptr)
             for (uint32_t lane = 0; lane < count; ++lane) {
                 const float aimed = o.aims->density(first + lane, f.position[lane], f.packet.direction(lane));
                 f.local.weight[lane] = mis_gather / (mis_gather / f.local.weight[lane] + aimed);
             }
         trace(first, sample);
+    }
+
+    /// Rays that point below their surface bring nothing, but count as samples.
+    void leave_out_below(uint32_t first, uint32_t count, Flight& f) const {
+        for (uint32_t lane = 0; lane < count; ++lane)
+            if (!g.receivers.is_above(tile.first + first + lane, f.position[lane], f.packet.direction(lane)))
+                f.valid[lane] = 0;
     }
 
     /// One ray from each receiver of a packet into a box.
@@ -123,7 +131,7 @@ struct Gatherer {
         Vec3 direction;
         if (!o.aims->sample(aim, i, position, u, direction)) return false;
         const Vec3 w = g.receivers.frame[r].to_local(direction);
-        if (!(w.z > 0.0f)) return false;
+        if (!(w.z > 0.0f) || !g.receivers.is_above(r, position, direction)) return false;
         const float density = mis_gather * hemisphere_pdf(w.z, o.share) + o.aims->density(i, position, direction);
         f.position[lane] = position;
         f.local.set(lane, w, mis_gather / density);

@@ -17,12 +17,13 @@ TileAims::Found TileAims::probe(const Tracer& tracer, const AimBox& box, const L
     uint32_t seen = 0, far = 0;
     for (uint32_t i = 0; i < kProbes; ++i) {
         const uint32_t h = hash_combine(hash_combine(seed, box.element), i), local = h % tile_.count;
-        const Vec3& p = origin(local, i % receivers_.positions_per_texel);
+        const uint32_t position = i % receivers_.positions_per_texel;
+        const Vec3& p = origin(local, position);
         const AimBox::View view = box.view_from(p);
         if (!(view.solid_angle > 0.0f)) continue;
         const Vec3 w = view.sample(owen_sobol(i, h));
         const float cosine = glm::dot(w, receivers_.frame[tile_.first + local].z);
-        if (!(cosine > 0.0f)) continue;
+        if (!(cosine > 0.0f) || !receivers_.is_above(tile_.first + local, position, w)) continue;
         ++found.rays;
         const Ray ray{p, w};
         const Hit hit = tracer.intersect(ray, kMaskGather);
