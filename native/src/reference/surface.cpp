@@ -29,7 +29,8 @@ Vec3 shading_normal(const Snapshot& s, uint32_t triangle, float u, float v) {
 Vertex front_vertex(const World& world, uint32_t triangle, float u, float v) {
     const Vec3 position = smooth_position(world.scene, triangle, u, v);
     const Vec3 n = shading_normal(world.scene, triangle, u, v);
-    return {world.tracer.offset(position, world.scene.geometric_normal(triangle)), n, n, false};
+    const Vec3 side = world.scene.geometric_normal(triangle);
+    return {world.tracer.offset(position, side), n, side, false};
 }
 
 Vertex flat_vertex(const World& world, const Hit& hit) {
