@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "api/cut_report.h"
 #include "encode/ahd.h"
 #include "pass/flipped_sides.h"
 #include "pass/term_bake.h"
@@ -86,6 +87,8 @@ void Job::bake(Progress& progress) {
     std::vector<std::vector<uint32_t>> products;
     for (const BakedTerm& t : output_.pages.terms) products.push_back(t.elements);
     output_.weight_terms = in_weights(package_content(scene, output_.pages).elements, products);
+    for (Warning& w : cut_warnings(scene, output_.bake.terms.cut, settings_.combinations))
+        output_.warnings.push_back(std::move(w));
     warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
     if (settings_.check_points == 0) return;
     output_.check =

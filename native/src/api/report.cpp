@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/check_report.h"
+#include "api/cut_report.h"
 #include "api/effects.h"
 #include "api/job.h"
 #include "api/memory_report.h"
@@ -104,14 +105,14 @@ json terms_json(const Snapshot& s, const BakedPages& pages) {
 }
 
 /// What the threshold left out of all terms together, and how many terms share a texel.
-json terms_total_json(const Snapshot& s, const BakedPages& pages) {
+json terms_total_json(const Snapshot& s, const BakedPages& pages, const CutLight& cut) {
     std::vector<uint32_t> count(s.texel_count(), 0);
     for (const BakedTerm& t : pages.terms)
         for (const uint32_t texel : t.texel) ++count[texel];
     TexelSummary summary;
     for (const uint32_t n : count)
         if (n > 0) summary.add(n, 0.0);
-    return {{"discarded", pages.discarded}, {"overlap", overlap_json(summary)}};
+    return {{"discarded", pages.discarded}, {"cut", cut_json(s, cut)}, {"overlap", overlap_json(summary)}};
 }
 
 json receivers_json(const JobOutput& o) {
@@ -164,7 +165,7 @@ std::string make_report(const Job& job) {
         {"time_limited", o.bake.time_limited},
         {"effects", effects_json(job, o, stage_seconds(job))},
         {"terms", terms_json(job.scene(), o.pages)},
-        {"terms_total", terms_total_json(job.scene(), o.pages)},
+        {"terms_total", terms_total_json(job.scene(), o.pages, o.bake.terms.cut)},
         {"warnings", warnings},
         {"memory_bytes", peak_memory()},
         {"memory_parts", memory_json(memory_parts(job.scene(), o))}};

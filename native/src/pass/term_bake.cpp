@@ -59,15 +59,10 @@ TermLimits TermBaker::limits_at(const Tile& part) const { return {guide().order_
 bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t rays, const TermSums* direct) {
     const uint32_t order = limits_at(part).order;
     if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
-    double cut = 0.0, kept = 0.0;
-    const auto add = [&](const TermSums& sums, double scale) {
-        if (sums.cuts().empty()) return;
-        for (const auto& [element, light] : sums.cuts()) cut += light * scale;
-        kept += sums.kept() * scale;
-    };
-    add(gather, 1.0 / std::max(rays, 1u));
-    if (direct != nullptr) add(*direct, 1.0);
-    if (cut <= kCutShare * kept) return false;
+    CutLight cut;
+    cut.add(gather, 1.0 / std::max(rays, 1u));
+    if (direct != nullptr) cut.add(*direct, 1.0);
+    if (cut.share() <= kCutShare) return false;
     order_[tile_of(part)] = order + 1;
     return true;
 }
@@ -113,7 +108,7 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     double sum = 0.0;
     for (const TermColor& e : current_.entries) sum += luminance(e.color) * table_.all_on(e.term);
     result_.bounce_means.push_back(sum / std::max(1.0, static_cast<double>(gathering_)));
-    result_.growth.add(s_.receivers, [&](uint32_t r) { return luminance(current_.total(r)); });
+    result_.growth.add(s_.receivers, [&](uint32_t r) { return luminance(current_.total(table_, r)); });
     source_ = source_.first.size() > 1 ? rows_.add_rows(source_, current_) : current_;
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();

@@ -16,6 +16,7 @@ struct FinalPart {
     std::vector<uint32_t> count;
     std::vector<TermLight> light;      ///< term = index into terms
     std::vector<double> kept, dropped; ///< luminance per term
+    CutLight cut;
 };
 
 /// Light that a receiver does not keep for an element is left out of states away from the start only: what it is
@@ -33,6 +34,11 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
     out.kept.assign(t.terms.size(), 0.0);
     out.dropped.assign(t.terms.size(), 0.0);
     const float per_ray = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u));
+    if (s_.scene.has_switches()) {
+        out.cut.add(t.gather, per_ray);
+        out.cut.add(t.direct, 1.0);
+        out.cut.most_elements = limits_at(tile).order;
+    }
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const size_t r = tile.first + lane;
         const size_t before = out.light.size();
@@ -81,6 +87,7 @@ void TermBaker::join(std::vector<FinalPart>& parts) {
             kept[number[i]] += t.kept[i];
             dropped[number[i]] += t.dropped[i];
         }
+        out.cut.add(t.cut);
         size_t next = 0;
         for (const uint32_t count : t.count) {
             for (uint32_t k = 0; k < count; ++k, ++next) {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "pass/cut_light.h"
 #include "sampling/sh.h"
-#include "transport/term_table.h"
 
 namespace ajar {
 
@@ -23,7 +23,7 @@ struct TermResult {
     std::vector<TermLight> light;
     std::vector<float> discarded; ///< per term: share of its light at receivers that do not keep it
     double all_discarded = 0.0;   ///< the same of all terms together
-    double order_discarded = 0.0; ///< W/m^2, mean over receivers, of terms with more elements than the plan allows
+    CutLight cut;
 };
 
 } // namespace ajar
