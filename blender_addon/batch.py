@@ -59,6 +59,9 @@ def parse(arguments):
         "--keep-uvs", action="store_true", help="keep the charts of existing AjarLightmap layers"
     )
     parser.add_argument("--no-preview", action="store_true", help="save the .blend without the preview")
+    parser.add_argument(
+        "--overlap-pictures", action="store_true", help="also store pictures of terms and bytes per texel"
+    )
     parser.add_argument("--predict", action="store_true", help="only say how long each preset would take")
     parser.add_argument("--layout-only", action="store_true", help="only unwrap and pack, do not bake")
     return parser.parse_args(arguments)
@@ -114,6 +117,7 @@ def overrides(options):
         "texels_per_meter": options.density,
         "combinations": options.combinations.upper() if options.combinations else None,
         "light_patches": options.light_patches.upper() if options.light_patches else None,
+        "overlap_pictures": options.overlap_pictures or None,
     }
     return {name: value for name, value in values.items() if value is not None}
 

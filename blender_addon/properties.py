@@ -21,7 +21,9 @@ from .apply import live
 
 _HIDDEN = {"HIDDEN"}
 _NUMBERS = {"int": IntProperty, "float": FloatProperty}
-_ENGINE_EXTRAS = tuple(field for field in fields.ENGINE_FIELDS if field.name in ("stitch_seams", "keep_sh"))
+_ENGINE_EXTRAS = tuple(
+    field for field in fields.ENGINE_FIELDS if field.name in ("stitch_seams", "keep_sh", "overlap_pictures")
+)
 
 
 def _property(field):

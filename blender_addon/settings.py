@@ -16,6 +16,7 @@ _FROM_SCENE = (
     "threads",
     "stitch_seams",
     "keep_sh",
+    "overlap_pictures",
     "combinations",
     "term_threshold",
     "light_patches",

@@ -9,6 +9,7 @@ from .record import absolute_path, load_json, relative_path
 
 _LINEAR = ("Linear Rec.709", "Linear")
 _DATA = ("Non-Color", "Raw")
+_COLOR = ("sRGB",)
 NOT_LIVE, MEAN = -1, -2  # Image.ajar.live_page of other images, and of the mean of all pages
 
 
@@ -70,6 +71,13 @@ def set_color_space(image, spaces):
 def load_direction(package, page):
     """The highlight direction and ratio of a manifest page, as data."""
     return load_image(os.path.join(package, page["packed"]["direction_png"]), _DATA)
+
+
+def load_overlap(package, what):
+    """The pictures of all pages of what ("overlap" or "bytes") texels take; none if the bake made none."""
+    manifest = load_json(os.path.join(package, "manifest.json"))
+    names = [page[what] for page in manifest.get("pages", []) if what in page]
+    return [load_image(os.path.join(package, name), _COLOR) for name in names]
 
 
 def _sum_of_lit_texels(image):

@@ -135,6 +135,10 @@ class AJAR_PT_sidebar_last(Sidebar, Panel):
     def draw(self, context):
         """Draws the panel."""
         draw_last_bake(self.layout, context)
+        if context.scene.ajar.last_bake and context.scene.ajar.overlap_pictures:
+            row = self.layout.row(align=True)
+            row.operator("ajar.show_overlap", text="Show Overlap", icon="IMAGE_DATA").what = "overlap"
+            row.operator("ajar.show_overlap", text="Show Bytes", icon="IMAGE_DATA").what = "bytes"
 
 
 class AJAR_PT_render(Properties, Panel):
@@ -175,6 +179,7 @@ class AJAR_PT_render_more(Properties, Panel):
             "combinations",
             "term_threshold",
             "light_patches",
+            "overlap_pictures",
             "memory_limit",
             "seed",
             "threads",

@@ -58,6 +58,7 @@ OPERATORS = (
     "cancel",
     "check",
     "preview_toggle",
+    "show_overlap",
     "prepare_uvs",
     "light_set_add",
     "light_set_remove",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # timeout: 400
-"""Light patches of a bake against its terms: equal for each box alone, the shadow twice where both are there."""
+"""Light patches of a bake against its terms: equal for each box alone, the shadow twice where both are there.
+And the pictures of what its texels take."""
 import json
 import os
 import subprocess
@@ -12,6 +13,9 @@ import numpy as np
 ROOT, FOLDER = os.environ["AJAR_ROOT"], os.environ["AJAR_TEST_DIR"]
 sys.path[:0] = [ROOT, os.path.join(ROOT, "examples", "runtime")]
 import light_patches as lp  # noqa: E402
+
+sys.path.append(os.path.dirname(os.path.abspath(__file__)))
+from support.addon import load_addon  # noqa: E402
 
 from blender_addon.bridge import runtime  # noqa: E402
 
@@ -26,7 +30,7 @@ def bake(blend, out):
     settings = ["--preset", "draft", "--density", "8", "--samples", "64", "--combinations", "all"]
     blender(
         *(blend, "--python-exit-code", "1", "-P", batch, "--", "--out", out),
-        *("--light-patches", "rgb", *settings),
+        *("--light-patches", "rgb", "--overlap-pictures", *settings),
     )
     return os.path.join(out, "package")
 
@@ -108,3 +112,11 @@ assert error(moved, patches.light_map(0, full, after)) < 1e-4
 dimmed = patches.changed_light(moved, 0, "P", -0.75, after)
 assert error(dimmed, patches.light_map(0, {"P": 0.25, "Q": 1.0}, after)) < 1e-4
 print("light patches: ok")
+
+load_addon()
+bpy.ops.wm.open_mainfile(filepath=os.path.join(FOLDER, "out", "double_shadow.blend"))
+for what in ("overlap", "bytes"):
+    assert bpy.ops.ajar.show_overlap(what=what) == {"FINISHED"}
+    picture = np.array(bpy.data.images[f"Ajar.page_0.{what}.png"].pixels).reshape(-1, 4)
+    assert len(np.unique(picture, axis=0)) > 2, "several numbers of terms, and none"
+print("overlap pictures: ok")
