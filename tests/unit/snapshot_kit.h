@@ -25,6 +25,15 @@ public:
         return builder_.add_material(d);
     }
 
+    /// Lets light through.
+    uint32_t glass(const Vec3& transmittance) {
+        const ajar_closure through = closure(AJAR_CLOSURE_TRANSPARENT, transmittance);
+        ajar_material_desc d{};
+        d.closure_count = 1;
+        d.closures = &through;
+        return builder_.add_material(d);
+    }
+
     /// Black, emits an image: width * height luminances, bottom row first, over UV layer 0.
     uint32_t glowing_image(uint32_t width, uint32_t height, const std::vector<float>& grey) {
         ajar_closure glow = closure(AJAR_CLOSURE_EMISSION, Vec3(1.0f));

@@ -11,6 +11,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <bit>
 #include <cstring>
 
 namespace ajar {
@@ -22,7 +23,9 @@ static_assert(offsetof(RayPacket, tfar) == offsetof(RTCRay8, tfar));
 static_assert(offsetof(RayPacket, nx) == offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, Ng_x));
 static_assert(offsetof(RayPacket, triangle) == offsetof(RTCRayHit8, hit) + offsetof(RTCHit8, primID));
 
-constexpr int kMaxLayers = 256; ///< transmissive surfaces one shadow ray may cross
+/// How far surfaces along a ray may come in the wrong order, of the distance and of the scene's diagonal: some
+/// hundred roundings of floats, for rays at grazing angles and triangles of any size. More only costs a little time.
+constexpr float kNearby = 1e-3f, kNearbyScene = 2e-5f;
 constexpr size_t kPadding = 16; ///< bytes that the ray tracer may read behind the last vertex
 
 /// Asks a query of Embree's. Version 4 takes arguments behind the rays, version 3 a context before them.
@@ -69,47 +72,114 @@ namespace {
 
 #ifdef AJAR_EMBREE4
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+using Context = RTCRayQueryContext;
 #else
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+using Context = RTCIntersectContext;
 #endif
 
-/// Where all_switches leaves what it meets. The tracer's own context must come first.
-struct Collector {
-#ifdef AJAR_EMBREE4
-    RTCRayQueryContext context;
-#else
-    RTCIntersectContext context;
-#endif
-    const std::vector<uint32_t>& first;
+/// A query that is asked about each hit. The tracer's own context must come first.
+struct Filter {
+    Context context;
+    const std::vector<uint32_t>& first; ///< first triangle of each geometry
+
+    Crossing place(const RTCFilterFunctionNArguments* a) const {
+        return {RTCHitN_primID(a->hit, a->N, 0) + first[RTCHitN_geomID(a->hit, a->N, 0)], RTCHitN_u(a->hit, a->N, 0),
+                RTCHitN_v(a->hit, a->N, 0)};
+    }
+};
+
+/// What a query's filter works on.
+template <class T>
+T* state(const RTCFilterFunctionNArguments* a) {
+    return static_cast<T*>(reinterpret_cast<Filter*>(a->context));
+}
+
+/// Where all_switches leaves what it meets.
+struct Collector : Filter {
     std::vector<Hit>& out;
+    float begin; ///< hits up to here do not count
 };
 
 /// Notes the hit and turns it down, so that the ray goes on.
 void collect(const RTCFilterFunctionNArguments* a) {
-    const auto* c = reinterpret_cast<const Collector*>(a->context);
-    const uint32_t triangle = RTCHitN_primID(a->hit, a->N, 0) + c->first[RTCHitN_geomID(a->hit, a->N, 0)];
+    const Collector* c = state<Collector>(a);
+    a->valid[0] = 0;
+    if (!(RTCRayN_tfar(a->ray, a->N, 0) > c->begin)) return;
+    const Crossing place = c->place(a);
     const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) +
                        RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
                        RTCRayN_dir_z(a->ray, a->N, 0) * RTCHitN_Ng_z(a->hit, a->N, 0);
-    c->out.push_back(
-        {triangle, RTCHitN_u(a->hit, a->N, 0), RTCHitN_v(a->hit, a->N, 0), RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
-    a->valid[0] = 0;
+    c->out.push_back({place.triangle, place.u, place.v, RTCRayN_tfar(a->ray, a->N, 0), side > 0.0f});
 }
 
-void call_collect(RTCScene scene, RTCRayHit* ray, Collector& c) {
+/// What next looks for.
+struct Unpassed : Filter {
+    const Passed& passed;
+    const Snapshot& scene;
+};
+
+void leave_out_passed(const RTCFilterFunctionNArguments* a) {
+    const Unpassed* u = state<Unpassed>(a);
+    if (u->passed.has(u->place(a), u->scene)) a->valid[0] = 0;
+}
+
+/// What is left of light that goes through layers, in whatever order the tracer finds them.
+struct Dimming : Filter {
+    const Snapshot& scene;
+    uint32_t seed;
+    std::vector<Crossing>& met; ///< the tracer may show a triangle more than once
+    LayerChance chance;
+    Vec3 left{1.0f};
+};
+
+/// Turns down layers that let light through, so that the ray goes on; none that ends it.
+void dim(const RTCFilterFunctionNArguments* a) {
+    Dimming* d = state<Dimming>(a);
+    const Crossing place = d->place(a);
+    a->valid[0] = 0;
+    if (std::any_of(d->met.begin(), d->met.end(), [&](const Crossing& m) { return place.is_same(m, d->scene); }))
+        return;
+    d->met.push_back(place);
+    const Vec3 transmittance = d->scene.surface(place.triangle, place.u, place.v).transmittance;
+    if (d->chance.pass(d->left, transmittance, unit_float(hash_combine(d->seed, place.triangle)))) return;
+    d->left = Vec3(0.0f);
+    a->valid[0] = -1;
+}
+
+/// Asks Query, RTCRayHit's nearest hit or RTCRay's any, and for each hit call.
+template <auto Query, class Rays, class Arguments>
+void ask_filtered(RTCScene scene, Rays* ray, Context& context, RTCFilterFunctionN call,
+                  [[maybe_unused]] void (*init)(Arguments*)) {
 #ifdef AJAR_EMBREE4
-    rtcInitRayQueryContext(&c.context);
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
+    rtcInitRayQueryContext(&context);
+    Arguments arguments;
+    init(&arguments);
     arguments.flags = static_cast<RTCRayQueryFlags>(arguments.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-    arguments.context = &c.context;
-    arguments.filter = collect;
-    rtcIntersect1(scene, ray, &arguments);
+    arguments.context = &context;
+    arguments.filter = call;
+    Query(scene, ray, &arguments);
 #else
-    rtcInitIntersectContext(&c.context);
-    c.context.filter = collect;
-    rtcIntersect1(scene, &c.context, ray);
+    rtcInitIntersectContext(&context);
+    context.filter = call;
+    Query(scene, &context, ray);
 #endif
+}
+
+#ifdef AJAR_EMBREE4
+constexpr auto kNearestArguments = rtcInitIntersectArguments;
+constexpr auto kAnyArguments = rtcInitOccludedArguments;
+#else
+constexpr void (*kNearestArguments)(Context*) = nullptr;
+constexpr void (*kAnyArguments)(Context*) = nullptr;
+#endif
+
+uint32_t seed_of(const Ray& ray) {
+    uint32_t seed = 0;
+    for (int i = 0; i < 3; ++i)
+        seed = hash_combine(hash_combine(seed, std::bit_cast<uint32_t>(ray.origin[i])),
+                            std::bit_cast<uint32_t>(ray.direction[i]));
+    return seed;
 }
 
 } // namespace
@@ -136,6 +206,7 @@ struct Tracer::Impl {
     RTCDevice device = nullptr;
     RTCBuffer vertices = nullptr; ///< one copy for all geometries
     Part fixed, switches;
+    bool layers = false; ///< something lets light through
 
     ~Impl() {
         for (const Part* part : {&fixed, &switches})
@@ -147,7 +218,9 @@ struct Tracer::Impl {
     void begin(const Snapshot& s) {
         device = rtcNewDevice(nullptr);
         if (device == nullptr) throw Error(AJAR_ERROR_INTERNAL, "the ray tracer could not start");
-        fixed.scene = new_scene(RTC_SCENE_FLAG_ROBUST);
+        layers = std::any_of(s.materials.begin(), s.materials.end(), [](const Material& m) { return m.transmits; });
+        const RTCSceneFlags robust = RTC_SCENE_FLAG_ROBUST;
+        fixed.scene = new_scene(layers ? static_cast<RTCSceneFlags>(robust | kFilterFlag) : robust);
         switches.scene = new_scene(static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | kFilterFlag));
         vertices = rtcNewBuffer(device, s.positions.size() * sizeof(Vec3) + kPadding);
         if (vertices == nullptr) no_memory();
@@ -176,7 +249,7 @@ struct Tracer::Impl {
         for (uint32_t t = begin; t < end; ++t)
             std::memcpy(indices + 3 * size_t{t - begin}, s.triangles[t].vertex, 3 * sizeof(uint32_t));
 #ifdef AJAR_EMBREE4
-        rtcSetGeometryEnableFilterFunctionFromArguments(g, (mask & kMaskSwitch) != 0);
+        rtcSetGeometryEnableFilterFunctionFromArguments(g, layers || (mask & kMaskSwitch) != 0);
 #endif
         rtcSetGeometryMask(g, mask);
         rtcCommitGeometry(g);
@@ -189,6 +262,10 @@ struct Tracer::Impl {
     void intersect(const Part& part, const Snapshot& s, const Ray& ray, uint32_t mask, Hit& out) const {
         RTCRayHit q = make_ray(ray, mask);
         ask<rtcIntersect1>(part.scene, &q);
+        read(part, s, q, ray, out);
+    }
+
+    static void read(const Part& part, const Snapshot& s, const RTCRayHit& q, const Ray& ray, Hit& out) {
         if (q.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
         const uint32_t triangle = part.triangle(q.hit.geomID, q.hit.primID);
         const float side = glm::dot(ray.direction, Vec3(q.hit.Ng_x, q.hit.Ng_y, q.hit.Ng_z));
@@ -262,6 +339,20 @@ Hit Tracer::intersect(const Ray& ray, uint32_t mask) const {
     return hit;
 }
 
+Hit Tracer::next(const Ray& ray, uint32_t mask, const Passed& passed) const {
+    RTCRayHit q = make_ray(ray, mask);
+    q.ray.tnear = std::max(ray.tnear, passed.start());
+    Unpassed u{{{}, impl_->fixed.first}, passed, scene_};
+    ask_filtered<rtcIntersect1>(impl_->fixed.scene, &q, u.context, leave_out_passed, kNearestArguments);
+    Hit hit;
+    Impl::read(impl_->fixed, scene_, q, ray, hit);
+    return hit;
+}
+
+void Tracer::pass(const Hit& hit, Passed& passed) const {
+    passed.add(hit, kNearby * hit.t + kNearbyScene * scene_.diagonal());
+}
+
 bool Tracer::occluded(const Ray& ray, uint32_t mask) const {
     return impl_->occluded(impl_->fixed, ray, mask & ~uint32_t{kMaskSwitch}) ||
            impl_->occluded(impl_->switches, ray, mask & kMaskSwitch);
@@ -269,10 +360,10 @@ bool Tracer::occluded(const Ray& ray, uint32_t mask) const {
 
 void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const {
     out.clear();
-    if (impl_->switches.empty()) return;
+    if (impl_->switches.empty() || !(ray.tfar > ray.tnear)) return;
     RTCRayHit q = make_ray(ray, mask);
-    Collector c{{}, impl_->switches.first, out};
-    call_collect(impl_->switches.scene, &q, c);
+    Collector c{{{}, impl_->switches.first}, out, ray.tnear > 0.0f ? ray.tnear : -1.0f};
+    ask_filtered<rtcIntersect1>(impl_->switches.scene, &q, c.context, collect, kNearestArguments);
     std::sort(out.begin(), out.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
     out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }),
@@ -280,17 +371,14 @@ void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) 
     for (Hit& h : out) h.back = h.back != scene_.triangles[h.triangle].mirrored;
 }
 
-Vec3 Tracer::tint(Ray ray) const {
-    Vec3 left(1.0f);
-    if (!has_transmissive_) return left;
-    for (int layer = 0; layer < kMaxLayers; ++layer) {
-        const Hit hit = intersect(ray, kMaskShadowTransmissive);
-        if (hit.triangle == kMiss) return left;
-        left *= scene_.surface(hit.triangle, hit.u, hit.v).transmittance;
-        if (max_component(left) < 1e-4f) return Vec3(0.0f);
-        ray.tnear = next_tnear(hit.t);
-    }
-    return Vec3(0.0f);
+Vec3 Tracer::tint(const Ray& ray) const {
+    if (!has_transmissive_) return Vec3(1.0f);
+    thread_local std::vector<Crossing> met;
+    met.clear();
+    RTCRayHit q = make_ray(ray, kMaskShadowTransmissive);
+    Dimming d{{{}, impl_->fixed.first}, scene_, seed_of(ray), met, {}};
+    ask_filtered<rtcOccluded1>(impl_->fixed.scene, &q.ray, d.context, dim, kAnyArguments);
+    return d.left;
 }
 
 Vec3 Tracer::transmittance(const Ray& ray) const { return occluded(ray, kMaskShadowOpaque) ? Vec3(0.0f) : tint(ray); }

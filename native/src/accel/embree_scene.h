@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "accel/ray.h"
+#include "accel/passed.h"
 
 namespace ajar {
 
@@ -27,15 +27,21 @@ public:
     uint32_t crossing(const int32_t* valid, const RayPacket& rays, uint32_t mask) const;
     /// Nearest surface of mask.
     Hit intersect(const Ray& ray, uint32_t mask) const;
+    /// Nearest fixed surface of mask that the ray has not passed. The scene must have some that let light through.
+    Hit next(const Ray& ray, uint32_t mask, const Passed& passed) const;
+    /// Goes through a surface that was met.
+    void pass(const Hit& hit, Passed& passed) const;
     /// Whether intersect() would find something; faster.
     bool occluded(const Ray& ray, uint32_t mask) const;
-    /// Every switchable surface of mask along the ray, each once, nearest first; also those in one plane.
+    /// Every switchable surface of mask along the ray, between tnear (without) and tfar (with), each once, nearest
+    /// first; also those in one plane.
     void all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) const;
     /// What is left of light along a shadow ray: 0 behind anything opaque, else the product of
     /// the transmittances in between.
     Vec3 transmittance(const Ray& ray) const;
-    /// The transmissive surfaces' part of transmittance; 1 if the scene has none.
-    Vec3 tint(Ray ray) const;
+    /// The transmissive surfaces' part of transmittance; 1 if the scene has none. Behind many layers an estimate
+    /// whose mean is right (LayerChance), the same for the same ray.
+    Vec3 tint(const Ray& ray) const;
     bool has_transmissive() const { return has_transmissive_; }
 
     /// Origin moved off the surface along the unit normal n, far enough that a ray which starts

@@ -13,12 +13,10 @@ namespace ajar {
 template <class Sink>
 struct Gatherer {
     using Through = typename Sink::Through;
-    static constexpr int kMaxLayers = 64;      ///< transmissive or switchable surfaces one gather ray may cross
     static constexpr int kMaxUnmapped = 12;    ///< consecutive surfaces without lightmap
     static constexpr float kNearTexels = 4.0f; ///< a solid's inside closer than this speaks for an invalid receiver
     static constexpr uint32_t kNoTexel = 0xffffffffu;
-    static constexpr float kLeastThrough = 1e-4f; ///< less light than this is not followed
-    static constexpr float kChainRays = 64.0f;    ///< rays behind one stand-in before fewer are followed
+    static constexpr float kChainRays = 64.0f; ///< rays behind one stand-in before fewer are followed
 
     const GatherScene& g;
     const GatherOptions& o;
@@ -37,6 +35,14 @@ struct Gatherer {
         uint32_t local;
         uint32_t sample;
         float weight; ///< inverse density of the ray, as if the hemisphere's rays were all, sr
+    };
+
+    /// What lies behind a ray on its way through layers.
+    struct Way {
+        Passed passed;         ///< fixed surfaces
+        LayerChance chance;    ///< of going on
+        float start = 0.0f;    ///< switchable surfaces up to here are behind
+        uint32_t segments = 0; ///< between fixed surfaces
     };
 
     /// A packet on its way. The light it met is read after the next one is traced: by then it has come from memory.
@@ -194,7 +200,7 @@ struct Gatherer {
                       triangle != kMiss && is_back(packet, lane)};
         const Origin from{local, f.sample, f.local.weight[lane]};
         if (texel != kNoTexel) return first_hit(ray, hit, through, from);
-        walk(ray, hit, through, from, kMaxLayers, f.crosses(lane));
+        walk(ray, hit, through, from, {}, f.crosses(lane));
     }
 
     /// The ray of a position that a switchable solid covers, from where it is moved to while the solid is there.
@@ -209,8 +215,7 @@ struct Gatherer {
                 worker.set(effect_of(g.scene, moved.presence));
                 const Ray ray{moved.origin, f.packet.direction(lane)};
                 ++rays;
-                walk(ray, g.tracer.intersect(ray, kMaskGather), there, {local, f.sample, f.local.weight[lane]},
-                     kMaxLayers);
+                walk(ray, g.tracer.intersect(ray, kMaskGather), there, {local, f.sample, f.local.weight[lane]}, {});
             }
             return through.condition.require(g.scene.elements, moved.presence.opposite());
         }
@@ -219,62 +224,72 @@ struct Gatherer {
 
     /// The general case: emission, layers of transmissive and switchable surfaces, back faces.
     /// hit: the nearest of what is always there. crosses: switchable surfaces may lie before it.
-    void walk(Ray ray, Hit hit, Through through, const Origin& from, int layers, bool crosses = true) {
-        for (; layers-- > 0; crosses = true) {
+    void walk(const Ray& ray, Hit hit, Through through, const Origin& from, Way way, bool crosses = true) {
+        for (;; crosses = true) {
             std::vector<Hit> switches;
             if (Sink::kSwitches && crosses) {
-                Ray part = ray;
-                if (hit.triangle != kMiss) part.tfar = hit.t;
-                g.tracer.all_switches(part, kMaskGatherSwitch, switches);
+                find_switches(ray, hit, way, switches);
                 if (!switches.empty()) worker.set(effect_of(g.scene, g.scene.presence(switches.front().triangle)));
             }
-            if (switches.empty() ? !end_segment(ray, hit, through, from, layers)
-                                 : !pass_switches(ray, switches, 0, hit, through, from, layers))
+            if (switches.empty() ? !end_segment(ray, hit, through, from, way)
+                                 : !pass_switches(ray, switches, 0, hit, through, from, way))
                 return;
-            ray.tnear = next_tnear(hit.t);
-            ++rays;
-            hit = g.tracer.intersect(ray, kMaskGather);
+            hit = go_on(ray, hit, way);
         }
     }
 
+    /// Switchable surfaces between those that the ray has passed and the fixed one it meets.
+    void find_switches(const Ray& ray, const Hit& end, const Way& way, std::vector<Hit>& switches) const {
+        Ray part = ray;
+        part.tnear = way.start;
+        if (end.triangle != kMiss) part.tfar = end.t;
+        g.tracer.all_switches(part, kMaskGatherSwitch, switches);
+    }
+
+    /// The next fixed surface behind one that lets light through.
+    Hit go_on(const Ray& ray, const Hit& passed, Way& way) {
+        g.tracer.pass(passed, way.passed);
+        way.start = std::max(way.start, passed.t);
+        ++way.segments;
+        ++rays;
+        return g.tracer.next(ray, kMaskGather, way.passed);
+    }
+
     /// What lies at the end of a stretch without switchable surfaces; true if the ray goes on.
-    bool end_segment(const Ray& ray, const Hit& hit, Through& through, const Origin& from, int layers) {
+    bool end_segment(const Ray& ray, const Hit& hit, Through& through, const Origin& from, Way& way) {
         if (hit.triangle == kMiss) {
             sky(ray.direction, through, from);
             return false;
         }
-        return meet_fixed(ray, hit, g.surfaces.flags(hit.triangle), through, from, layers);
+        return meet_fixed(ray, hit, g.surfaces.flags(hit.triangle), through, from, way);
     }
 
     /// Switchable surfaces from number next on, then the fixed hit behind them. A way that goes on
     /// behind a surface which is there is followed to its end here; true if the plain one goes on.
     bool pass_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
-                       const Origin& from, int layers) {
+                       const Origin& from, Way& way) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Hit& hit = switches[next];
                 const Presence p = g.scene.presence(hit.triangle);
                 const uint8_t f = g.surfaces.flags(hit.triangle);
                 Through there = through;
+                Way behind = way;
                 if (there.condition.require(g.scene.elements, p) && !is_dead(hit, f) &&
-                    shine(ray, hit, f, there, from, layers) &&
-                    pass_switches(ray, switches, next + 1, end, there, from, layers)) {
-                    Ray behind = ray;
-                    behind.tnear = next_tnear(end.t);
-                    ++rays;
-                    walk(behind, g.tracer.intersect(behind, kMaskGather), there, from, layers);
-                }
+                    shine(ray, hit, f, there, from, behind) &&
+                    pass_switches(ray, switches, next + 1, end, there, from, behind))
+                    walk(ray, go_on(ray, end, behind), there, from, behind);
                 if (!through.condition.require(g.scene.elements, p.opposite())) return false;
             }
         }
-        return end_segment(ray, end, through, from, layers);
+        return end_segment(ray, end, through, from, way);
     }
 
     /// Light of a surface that is always there; true if some goes through it.
-    bool meet_fixed(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, int layer) {
+    bool meet_fixed(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, Way& way) {
         if (is_inside(hit, f) && hit.t < kNearTexels * g.receivers.texel_size[tile.first + from.local])
             sink.add_inside(from.local);
-        return !is_dead(hit, f) && shine(ray, hit, f, through, from, layer);
+        return !is_dead(hit, f) && shine(ray, hit, f, through, from, way);
     }
 
     /// A back that neither reflects nor glows.
@@ -285,7 +300,7 @@ struct Gatherer {
     }
 
     /// What a surface sends along the ray; true if light from behind gets through, dimmed.
-    bool shine(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, int layer) {
+    bool shine(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, Way& way) {
         const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
         if (mapped && !(f & SurfaceTable::kTransmits)) {
             if (o.emission && (f & SurfaceTable::kEmits))
@@ -294,7 +309,7 @@ struct Gatherer {
             return false;
         }
         if (const uint32_t r = plain_receiver(hit, f); r != kNoReceiver) {
-            stand_in(ray, hit, through, g.receivers.albedo[r], from, layer);
+            stand_in(ray, hit, through, g.receivers.albedo[r], from, way);
             return false;
         }
         if ((f & SurfaceTable::kTransmits) != 0 && worker.effect() == own) worker.set(Effect::transparency);
@@ -303,9 +318,13 @@ struct Gatherer {
         if (mapped)
             first_hit(ray, hit, through, from);
         else
-            stand_in(ray, hit, through, s.reflectance, from, layer);
-        through.color *= s.transmittance;
-        return max_component(through.color) > kLeastThrough;
+            stand_in(ray, hit, through, s.reflectance, from, way);
+        return max_component(s.transmittance) > 0.0f && dims(hit, s, through, seed_of(from), way);
+    }
+
+    /// Light that goes on through a surface; false if none does.
+    bool dims(const Hit& hit, const SurfaceSample& s, Through& through, uint32_t seed, Way& way) const {
+        return way.chance.pass(through.color, s.transmittance, unit_float(hash_combine(seed, hit.triangle)));
     }
 
     /// Receiver of the texel of a surface that neither glows nor lets light through: its back reflects as its front.
@@ -316,10 +335,10 @@ struct Gatherer {
 
     /// What stands in for stored light where a gather ray meets a surface without it.
     void stand_in(const Ray& ray, const Hit& hit, const Through& through, const Vec3& reflectance, const Origin& from,
-                  int layer) {
+                  const Way& way) {
         const float cosine = glm::dot(ray.direction, g.receivers.frame[tile.first + from.local].z);
         rays_before_chain = rays;
-        unmapped(ray, hit, through, reflectance, hash_combine(seed_of(from), static_cast<uint32_t>(layer)), 0, cosine);
+        unmapped(ray, hit, through, reflectance, hash_combine(seed_of(from), way.segments), 0, cosine);
     }
 
     uint32_t seed_of(const Origin& from) const {
@@ -389,8 +408,7 @@ struct Gatherer {
         if (unit_float(hash_combine(seed, 0x22u)) >= survive) return;
         const Vec3 local = sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f);
         through.color /= survive;
-        path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), depth + 1, kMaxLayers,
-             local.z);
+        path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), depth + 1, local.z);
     }
 
     /// Where surfaces reflect and let through at once, every one splits the chain: their number would be exponential.
@@ -430,26 +448,25 @@ struct Gatherer {
     }
 
     /// Follows a ray of such a stand-in. What emitter samples find there is left to them.
-    void path(Ray ray, Through through, uint32_t seed, int depth, int layers, float cosine) {
-        while (layers-- > 0) {
-            ++rays;
-            const Hit end = g.tracer.intersect(ray, kMaskGather);
+    void path(const Ray& ray, Through through, uint32_t seed, int depth, float cosine) {
+        ++rays;
+        path_on(ray, g.tracer.intersect(ray, kMaskGather), through, seed, depth, {}, cosine);
+    }
+
+    void path_on(const Ray& ray, Hit end, Through through, uint32_t seed, int depth, Way way, float cosine) {
+        for (;; end = go_on(ray, end, way)) {
             if constexpr (Sink::kSwitches) {
                 std::vector<Hit> switches;
-                Ray part = ray;
-                if (end.triangle != kMiss) part.tfar = end.t;
-                g.tracer.all_switches(part, kMaskGatherSwitch, switches);
-                if (!path_switches(ray, switches, 0, end, through, seed, depth, layers, cosine)) return;
-            } else if (!path_end(ray, end, through, seed, depth, layers, cosine)) {
+                find_switches(ray, end, way, switches);
+                if (!path_switches(ray, switches, 0, end, through, seed, depth, way, cosine)) return;
+            } else if (!path_end(ray, end, through, seed, depth, way, cosine)) {
                 return;
             }
-            ray.tnear = next_tnear(end.t);
         }
     }
 
-    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layers,
-                  float cosine) {
-        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, layers, cosine);
+    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, Way& way, float cosine) {
+        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, way, cosine);
         if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit())
             sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
         return false;
@@ -457,27 +474,25 @@ struct Gatherer {
 
     /// As pass_switches, along such a path.
     bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
-                       uint32_t seed, int depth, int layers, float cosine) {
+                       uint32_t seed, int depth, Way& way, float cosine) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Presence p = g.scene.presence(switches[next].triangle);
                 const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
                 Through there = through;
+                Way behind = way;
                 if (there.condition.require(g.scene.elements, p) &&
-                    path_shine(ray, switches[next], there, own_seed, depth, layers, cosine) &&
-                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, layers, cosine)) {
-                    Ray behind = ray;
-                    behind.tnear = next_tnear(end.t);
-                    path(behind, there, own_seed, depth, layers, cosine);
-                }
+                    path_shine(ray, switches[next], there, own_seed, depth, behind, cosine) &&
+                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, behind, cosine))
+                    path_on(ray, go_on(ray, end, behind), there, own_seed, depth, behind, cosine);
                 if (!through.condition.require(g.scene.elements, p.opposite())) return false;
             }
         }
-        return path_end(ray, end, through, seed, depth, layers, cosine);
+        return path_end(ray, end, through, seed, depth, way, cosine);
     }
 
     /// Light of one surface on such a path; true if some from behind gets through.
-    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, int layer,
+    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, Way& way,
                     float cosine) {
         const uint8_t f = g.surfaces.flags(hit.triangle);
         if (is_dead(hit, f)) return false;
@@ -490,11 +505,10 @@ struct Gatherer {
         if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone)
             sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
         if (!mapped)
-            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, static_cast<uint32_t>(layer)), depth, cosine);
+            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, way.segments), depth, cosine);
         else if (sink.has_texels())
             sink.texel(through, lit_texel(ray, hit), 1.0f);
-        through.color *= s.transmittance;
-        return max_component(through.color) > kLeastThrough;
+        return max_component(s.transmittance) > 0.0f && dims(hit, s, through, seed, way);
     }
 };
 
