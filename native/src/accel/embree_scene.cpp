@@ -62,14 +62,6 @@ RTCRayHit make_ray(const Ray& r, uint32_t mask) {
     return q;
 }
 
-} // namespace
-
-// The same ray meets the same triangle at the same t, so a slightly larger tnear is past it for
-// sure, even at grazing angles where a moved origin would meet it again.
-float next_tnear(float t) { return t * (1.0f + 4.0f * 0x1p-23f) + 1e-20f; }
-
-namespace {
-
 #ifdef AJAR_EMBREE4
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 using Context = RTCRayQueryContext;

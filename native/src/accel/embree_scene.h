@@ -8,9 +8,6 @@
 
 namespace ajar {
 
-/// Where to go on behind a hit at t on the same ray.
-float next_tnear(float t);
-
 /// Ray tracing over the flattened snapshot, which must outlive it. Safe from any thread.
 class Tracer {
 public:

@@ -6,7 +6,6 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kSureBounces = 2; ///< reflections before paths end by chance
-constexpr int kMaxLayers = 256;      ///< transmissive surfaces one ray may cross
 
 } // namespace
 
@@ -72,9 +71,10 @@ Vec3 PathTracer::irradiance(Vertex receiver, const Vec2& first, const SceneState
 bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
     const Sky& sky = world_.scene.sky;
     const SceneState state = state_of(walk);
-    Ray ray{walk.at.position, direction};
-    for (int layer = 0; layer < kMaxLayers; ++layer) {
-        const Hit hit = world_.meet(ray, state);
+    const Ray ray{walk.at.position, direction};
+    Passed passed;
+    while (true) {
+        const Hit hit = world_.meet(ray, state, passed);
         if (door_bounces_ != kAnyBounces && walk.length <= door_bounces_)
             walk.behind_door = walk.behind_door || leaves_by_door(walk, ray, hit);
         if (hit.triangle == kMiss) {
@@ -94,9 +94,8 @@ bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
             return reflect(walk, hit, s.reflectance);
         }
         walk.through *= s.transmittance / goes_on;
-        ray.tnear = next_tnear(hit.t);
+        world_.tracer.pass(hit, passed);
     }
-    return false;
 }
 
 void PathTracer::add_emission(Walk& walk, const Ray& ray, const Hit& hit, const Vec3& radiance, float cosine) const {

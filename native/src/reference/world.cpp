@@ -15,15 +15,16 @@ bool SceneState::is_there(const Presence& p) const {
 World::World(const Snapshot& s, const Tracer& t)
     : scene(s), tracer(t), behind_(find_solids(s, t)), has_switches_(s.has_switches()) {}
 
-Hit World::meet(const Ray& ray, const SceneState& state) const {
-    const Hit fixed = tracer.intersect(ray, kMaskGather);
+Hit World::meet(const Ray& ray, const SceneState& state, const Passed& passed) const {
+    const Hit fixed = passed.empty() ? tracer.intersect(ray, kMaskGather) : tracer.next(ray, kMaskGather, passed);
     if (!has_switches_) return fixed;
     thread_local std::vector<Hit> switches;
     Ray before = ray;
+    before.tnear = std::max(ray.tnear, passed.start());
     if (fixed.triangle != kMiss) before.tfar = fixed.t;
     tracer.all_switches(before, kMaskGatherSwitch, switches);
     for (const Hit& h : switches)
-        if (state.is_there(scene.presence(h.triangle))) return h;
+        if (!passed.has({h.triangle, h.u, h.v}, scene) && state.is_there(scene.presence(h.triangle))) return h;
     return fixed;
 }
 

@@ -27,7 +27,9 @@ public:
     World(const Snapshot& scene, const Tracer& tracer);
 
     /// First surface that is there; kMiss for none.
-    Hit meet(const Ray& ray, const SceneState& state) const;
+    Hit meet(const Ray& ray, const SceneState& state) const { return meet(ray, state, {}); }
+    /// The same, of those that the ray has not passed.
+    Hit meet(const Ray& ray, const SceneState& state, const Passed& passed) const;
     /// What is left of light along a shadow ray.
     Vec3 transmittance(const Ray& ray, const SceneState& state) const;
     /// A back that sends nothing, of a one-sided surface.
