@@ -75,7 +75,8 @@ void Job::bake(Progress& progress) {
     const EmitterSet emitters(scene, pool, progress);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;
-    const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress};
+    const LampSpots spots(scene, tracer, surfaces, emitters);
+    const GatherScene gather{scene, tracer, surfaces, emitters, output_.receivers, progress, &spots};
     const double store = settings_.time_limit > 0.0f || settings_.trial != 0 ? seconds_to_store(pool.size()) : 0.0;
     ajar_settings passes = settings_;
     passes.time_limit = time_for_passes(tracer, pool, progress);

@@ -95,7 +95,7 @@ private:
     /// Seconds that the time limit leaves for the passes.
     double time_left() const;
     GatherScene final_scene() const {
-        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
+        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_, s_.spots};
     }
 
     GatherScene s_;

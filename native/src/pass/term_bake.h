@@ -84,7 +84,7 @@ private:
     /// Knows what lights a tile.
     const TermBaker& guide() const { return first_ != nullptr ? *first_ : *this; }
     GatherScene final_scene() const {
-        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_};
+        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_, s_.spots};
     }
 
     GatherScene s_;

@@ -47,6 +47,8 @@ public:
 
     uint32_t count() const { return static_cast<uint32_t>(emitters_.size()); }
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
+    /// The lamp, or null for other emitters.
+    const Light* lamp(uint32_t e) const { return is_lamp(e) ? &scene_.lights[emitters_[e].index] : nullptr; }
     /// A lamp whose direct light is not stored.
     bool is_primary(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].primary; }
     /// What sampling an emitter counts as.

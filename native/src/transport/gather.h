@@ -2,6 +2,7 @@
 #pragma once
 
 #include "sampling/direct_groups.h"
+#include "transport/lamp_spots.h"
 #include "transport/packet_choice.h"
 #include "transport/surface_table.h"
 #include "transport/term_sums.h"
@@ -18,6 +19,7 @@ struct GatherScene {
     const EmitterSet& emitters;
     const LightmapReceivers& receivers;
     const Progress& progress;
+    const LampSpots* spots = nullptr; ///< of surfaces without lightmap; null: none are aimed at
 };
 
 /// What one gather collects.

@@ -13,10 +13,16 @@ namespace ajar {
 template <class Sink>
 struct Gatherer {
     using Through = typename Sink::Through;
-    static constexpr int kMaxUnmapped = 12;    ///< consecutive surfaces without lightmap
     static constexpr float kNearTexels = 4.0f; ///< a solid's inside closer than this speaks for an invalid receiver
     static constexpr uint32_t kNoTexel = 0xffffffffu;
-    static constexpr float kChainRays = 64.0f; ///< rays behind one stand-in before fewer are followed
+    static constexpr float kChainSplits =
+        16.0f; ///< ways that switchable surfaces split a chain into before chance ends some
+    /// Gather rays of a receiver per place that is drawn from the lamps' side, and how often a chain draws one. With
+    /// twice as many a lamp 5 cm under a ceiling has 0.8 times the noise for 1.2 times the rays.
+    static constexpr uint32_t kRaysPerSpot = 8;
+    static constexpr float kChainSpots = 0.25f;
+    /// Places that such draws choose less often than gather rays, by this factor, are left to the rays.
+    static constexpr float kRareSpot = 0.05f;
 
     const GatherScene& g;
     const GatherOptions& o;
@@ -24,7 +30,7 @@ struct Gatherer {
     Sink sink;
     float mis_gather; ///< rays over the hemisphere, per receiver
     uint64_t rays = 0;
-    uint64_t rays_before_chain = 0; ///< of the present stand-in
+    uint32_t splits = 0; ///< of the present stand-in's chain, by switchable surfaces
     TileRays tile_rays;
     Worker& worker = Worker::mine();
     Effect own;      ///< what ordinary rays count as
@@ -94,6 +100,10 @@ struct Gatherer {
                 for (uint32_t first = 0; first < tile.count; first += kLanes)
                     if (o.packets.has(first)) shoot_aimed(first, aim, s, sample);
         land(flights[turn ^ 1]);
+        if (has_spots())
+            for (uint32_t s = 0; s < spots_per_receiver(); ++s, ++sample)
+                for (uint32_t first = 0; first < tile.count; first += kLanes)
+                    if (o.packets.has(first)) receive_spots(first, s, sample);
     }
 
     void shoot(uint32_t first, uint32_t stratum, uint32_t sample) {
@@ -336,9 +346,10 @@ struct Gatherer {
     /// What stands in for stored light where a gather ray meets a surface without it.
     void stand_in(const Ray& ray, const Hit& hit, const Through& through, const Vec3& reflectance, const Origin& from,
                   const Way& way) {
-        const float cosine = glm::dot(ray.direction, g.receivers.frame[tile.first + from.local].z);
-        rays_before_chain = rays;
-        unmapped(ray, hit, through, reflectance, hash_combine(seed_of(from), way.segments), 0, cosine);
+        splits = 0;
+        const bool first = way.segments == 0 && !is_switch(hit) && takes_spots(from.local);
+        const Sender sender{first ? mis_gather / from.weight : 0.0f, static_cast<float>(spots_per_receiver())};
+        unmapped(ray, hit, through, reflectance, 1.0f, hash_combine(seed_of(from), way.segments), sender);
     }
 
     uint32_t seed_of(const Origin& from) const {
@@ -391,55 +402,75 @@ struct Gatherer {
         return texel_on_side(g, hit.triangle, texel, ray.origin + ray.direction * hit.t);
     }
 
+    /// Where a ray that met a surface came from, for others that may find the same place (LampSpots).
+    struct Sender {
+        float density; ///< rays per steradian; 0: no others find it
+        float spots;   ///< expected number of places drawn from the lamps' side
+    };
+    /// Such a place and its sender. Both have the same weights for it.
+    struct Sharing {
+        float gather = 0.0f; ///< rays per square metre of the surface; 0: all is theirs
+        float spots = 0.0f;
+    };
+
+    bool has_spots() const { return o.unmapped_direct && g.spots != nullptr && !g.spots->empty(); }
+    uint32_t spots_per_receiver() const { return std::max(o.samples / kRaysPerSpot, 1u); }
+    bool takes_spots(uint32_t local) const { return has_spots() && !g.receivers.has_moved(tile.first + local); }
+    bool is_switch(const Hit& hit) const {
+        return Sink::kSwitches && g.scene.presence(hit.triangle).element != kNoElement;
+    }
+
     /// Surfaces without a lightmap have no stored light: one emitter sample and one more ray stand
-    /// in. Bounces there are free, they do not count as one of the series.
-    /// cosine: of the ray at its start.
-    void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, uint32_t seed, int depth,
-                  float cosine) {
-        if (depth >= kMaxUnmapped || !(max_component(reflectance) > 0.0f)) return;
+    /// in. Bounces there are free, they do not count as one of the series. survives: chance of the further ray.
+    void unmapped(const Ray& ray, const Hit& hit, Through through, const Vec3& reflectance, float survives,
+                  uint32_t seed, const Sender& sender) {
+        if (!(max_component(reflectance) > 0.0f)) return;
         const Working here(Effect::unmapped_surfaces);
         Vec3 n = g.scene.geometric_normal(hit.triangle);
         if (hit.back) n = -n;
         const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n);
         through.color *= reflectance;
-        if (o.unmapped_direct) direct_light(p, n, through, hash_combine(seed, 0x11u), footprint(ray, hit, n, cosine));
-        // Russian roulette by reflectance keeps chains short in dark rooms.
-        const float survive = depth == 0 ? 1.0f : std::min(1.0f, max_component(reflectance)) * chance_to_branch();
-        if (unit_float(hash_combine(seed, 0x22u)) >= survive) return;
+        if (o.unmapped_direct) {
+            const float facing = std::abs(glm::dot(ray.direction, n)) / std::max(hit.t * hit.t, 1e-30f);
+            direct_light(p, n, hit.triangle, through, hash_combine(seed, 0x11u),
+                         {sender.density * facing, sender.spots});
+        }
+        if (has_spots() && unit_float(hash_combine(seed, 0x66u)) < kChainSpots) chain_spot(p, n, through, seed);
+        if (unit_float(hash_combine(seed, 0x22u)) >= survives) return;
         const Vec3 local = sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f);
-        through.color /= survive;
-        path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), depth + 1, local.z);
+        through.color /= survives;
+        path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), local.z);
     }
 
-    /// Where surfaces reflect and let through at once, every one splits the chain: their number would be exponential.
-    float chance_to_branch() const {
-        return std::min(1.0f, kChainRays / static_cast<float>(std::max<uint64_t>(rays - rays_before_chain, 1)));
-    }
+    /// Every switchable surface splits a chain in two, for it is there or not: their number would be exponential.
+    float chance_to_branch() const { return std::min(1.0f, kChainSplits / static_cast<float>(std::max(splits, 1u))); }
 
-    /// Squared radius of the part of a surface that one ray stands for, m^2.
-    float footprint(const Ray& ray, const Hit& hit, const Vec3& n, float cosine) const {
-        const float density = static_cast<float>(o.samples) * hemisphere_pdf(std::max(cosine, 1e-3f), o.share);
-        const float facing = std::max(std::abs(glm::dot(ray.direction, n)), 0.05f);
-        return hit.t * hit.t * kInvPi / (density * facing);
-    }
-
-    /// What one emitter sample sends off a surface at p. A lamp nearer than the ray's footprint lights
-    /// a spot of it, which this one ray would show far too bright or not at all: the inverse square
-    /// law is rounded off there.
-    void direct_light(const Vec3& p, const Vec3& n, Through through, uint32_t seed, float footprint) {
+    /// What one emitter sample sends off a surface at p. Lamps share it with places drawn from their side, emissive
+    /// triangles with the chain's next ray.
+    void direct_light(const Vec3& p, const Vec3& n, uint32_t triangle, const Through& through, uint32_t seed,
+                      const Sharing& sharing) {
         float chance;
         const uint32_t e = g.emitters.pick_anywhere(p, n, hash32(seed), chance);
         if (e == EmitterSet::kNone) return;
         const EmitterSample s = g.emitters.sample(e, p, owen_sobol(0, seed));
+        float weight = 1.0f;
+        if (std::isfinite(s.distance) && s.pdf > 0.0f)
+            weight = s.pdf / (s.pdf + std::max(glm::dot(s.direction, n), 0.0f) * kInvPi);
+        else if (sharing.gather > 0.0f && g.spots != nullptr)
+            weight =
+                1.0f - spot_share(sharing, g.spots->density(e, p, n), [&] { return g.spots->reaches(e, triangle, p); });
+        reflect(p, n, e, s, through, weight / chance);
+    }
+
+    /// Light of an emitter sample off a surface at p, times scale over what the way there is worth.
+    void reflect(const Vec3& p, const Vec3& n, uint32_t e, const EmitterSample& s, Through through, float scale) {
         const float cosine = glm::dot(s.direction, n);
-        if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f)) return;
+        if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f) || !(scale > 0.0f)) return;
         if constexpr (Sink::kSwitches)
             if (const Presence there = g.emitters.presence(e);
                 there.element != kNoElement && !through.condition.require(g.scene.elements, there))
                 return;
-        const float square = s.distance * s.distance;
-        const float rounded = std::isfinite(square) ? square / (square + footprint) : 1.0f;
-        const Vec3 light = s.weight * (rounded * cosine * kInvPi / chance);
+        const Vec3 light = s.weight * (cosine * kInvPi * scale);
         const Ray ray{p, s.direction, 0.0f, shadow_end(g.tracer, s)};
         if (!s.casts_shadow) return sink.light(through, g.emitters.set_of(e), light);
         if (g.tracer.occluded(ray, kMaskShadowOpaque)) return;
@@ -447,26 +478,129 @@ struct Gatherer {
                              [&](const Through& t) { sink.light(t, g.emitters.set_of(e), light); });
     }
 
-    /// Follows a ray of such a stand-in. What emitter samples find there is left to them.
-    void path(const Ray& ray, Through through, uint32_t seed, int depth, float cosine) {
-        ++rays;
-        path_on(ray, g.tracer.intersect(ray, kMaskGather), through, seed, depth, {}, cosine);
+    /// Share of places drawn from the lamps' side in the light of one, by the balance heuristic.
+    /// reaches(): whether they draw it at all.
+    template <class Reaches>
+    static float spot_share(const Sharing& sharing, float density, const Reaches& reaches) {
+        const float drawn = sharing.spots * density;
+        return drawn > kRareSpot * sharing.gather && reaches() ? drawn / (drawn + sharing.gather) : 0.0f;
     }
 
-    void path_on(const Ray& ray, Hit end, Through through, uint32_t seed, int depth, Way way, float cosine) {
+    /// A place that a lamp lights, and a direction from x to it.
+    struct Glint {
+        LampSpots::Spot spot;
+        Vec3 direction{0.0f};
+        float distance = 0.0f, per_area = 0.0f; ///< steradian per square metre of the place
+        Vec3 reflectance{0.0f};
+    };
+
+    /// Draws a place whose light may arrive at x; false if none does.
+    bool find_glint(const Vec3& x, uint32_t number, uint32_t seed, Glint& glint) {
+        ++rays;
+        if (!g.spots->sample(owen_sobol(shuffle_index(number, seed), seed), unit_float(hash_combine(seed, number)),
+                             glint.spot))
+            return false;
+        const Vec3 to = glint.spot.position - x;
+        const float square = glm::dot(to, to);
+        if (!(square > 0.0f)) return false;
+        glint.distance = std::sqrt(square), glint.direction = to / glint.distance;
+        const float facing = -glm::dot(glint.direction, glint.spot.normal);
+        glint.per_area = facing / square;
+        if (!(facing > 0.0f)) return false;
+        const Hit& hit = glint.spot.hit;
+        const uint8_t f = g.surfaces.flags(hit.triangle);
+        if (is_inside(hit, f) || (!hit.back && !(f & SurfaceTable::kUnmapped))) return false;
+        const uint32_t r = plain_receiver(hit, f);
+        glint.reflectance =
+            r != kNoReceiver ? g.receivers.albedo[r] : g.scene.surface(hit.triangle, hit.u, hit.v).reflectance;
+        return max_component(glint.reflectance) > 0.0f;
+    }
+
+    /// Sends its light to x, times scale. Only places that are the first fixed surface from there count.
+    void receive(const Glint& glint, const Vec3& x, Through through, float scale, uint32_t seed) {
+        const LampSpots::Spot& spot = glint.spot;
+        const Vec3 p = g.tracer.offset(spot.position, spot.normal), to = p - x;
+        const float distance = glm::length(to);
+        if (!((g.scene.ray_mask(g.scene.triangles[spot.hit.triangle]) & kMaskGather) != 0) || !(distance > 0.0f))
+            return;
+        const Ray ray{x, to / distance, 0.0f, distance};
+        ++rays;
+        if (g.tracer.occluded(ray, kMaskGather)) return;
+        through.color *= glint.reflectance;
+        const EmitterSample s = g.emitters.sample(spot.emitter, p, owen_sobol(0, seed));
+        const auto arrive = [&](const Through& t) { reflect(p, spot.normal, spot.emitter, s, t, scale); };
+        if constexpr (Sink::kSwitches) {
+            std::vector<Hit> switches;
+            g.tracer.all_switches(ray, kMaskGatherSwitch, switches);
+            return through_switches<Sink>(g.scene, switches, 0, through, arrive);
+        }
+        arrive(through);
+    }
+
+    /// One place drawn from the lamps' side for each receiver of a packet.
+    void receive_spots(uint32_t first, uint32_t number, uint32_t sample) {
+        const Working here(Effect::unmapped_surfaces);
+        Flight& f = flights[0];
+        const uint32_t count = std::min(kLanes, tile.count - first);
+        for (uint32_t lane = 0; lane < kLanes; ++lane) f.local.set(lane, Vec3(0, 0, 1), 0.0f);
+        for (uint32_t lane = 0; lane < count; ++lane) {
+            receive_spot(first + lane, lane, number, f.local);
+            sink.end_sample(lane, first + lane, sample, f.local);
+        }
+        sink.end_packet(first, sample, f.local);
+    }
+
+    void receive_spot(uint32_t i, uint32_t lane, uint32_t number, PacketDirections& local) {
+        const uint32_t r = tile.first + i, h = hash_combine(hash_combine(o.seed, g.receivers.texel[r]), 0x77u);
+        if (!takes_spots(i)) return;
+        const uint32_t position = (number + h) % g.receivers.positions_per_texel;
+        const Vec3& x = g.receivers.origins(r)[position];
+        Glint glint;
+        if (!find_glint(x, number, h, glint) || !g.receivers.is_above(r, position, glint.direction)) return;
+        const Vec3 w = g.receivers.frame[r].to_local(glint.direction);
+        if (!(w.z > 0.0f)) return;
+        float density = mis_gather * hemisphere_pdf(w.z, o.share);
+        if (o.aims != nullptr) density += o.aims->density(i, position, glint.direction);
+        const Sharing sharing{density * glint.per_area, static_cast<float>(spots_per_receiver())};
+        const float share = spot_share(sharing, glint.spot.density, [] { return true; });
+        if (!(share > 0.0f)) return;
+        local.set(lane, w, mis_gather * glint.per_area * share / (sharing.spots * glint.spot.density));
+        receive(glint, x, sink.start(g.scene, g.receivers.triangle[r]), 1.0f, hash_combine(h, number));
+    }
+
+    /// The same for a surface at p on such a chain.
+    void chain_spot(const Vec3& p, const Vec3& n, const Through& through, uint32_t seed) {
+        Glint glint;
+        if (!find_glint(p, 0, hash_combine(seed, 0x77u), glint)) return;
+        const float cosine = glm::dot(glint.direction, n);
+        if (!(cosine > 0.0f)) return;
+        const Sharing sharing{cosine * kInvPi * glint.per_area, kChainSpots};
+        const float share = spot_share(sharing, glint.spot.density, [] { return true; });
+        if (!(share > 0.0f)) return;
+        receive(glint, p, through, sharing.gather * share / (sharing.spots * glint.spot.density),
+                hash_combine(seed, 0x88u));
+    }
+
+    /// Follows a ray of such a stand-in. cosine: at its start.
+    void path(const Ray& ray, Through through, uint32_t seed, float cosine) {
+        ++rays;
+        path_on(ray, g.tracer.intersect(ray, kMaskGather), through, seed, {}, cosine);
+    }
+
+    void path_on(const Ray& ray, Hit end, Through through, uint32_t seed, Way way, float cosine) {
         for (;; end = go_on(ray, end, way)) {
             if constexpr (Sink::kSwitches) {
                 std::vector<Hit> switches;
                 find_switches(ray, end, way, switches);
-                if (!path_switches(ray, switches, 0, end, through, seed, depth, way, cosine)) return;
-            } else if (!path_end(ray, end, through, seed, depth, way, cosine)) {
+                if (!path_switches(ray, switches, 0, end, through, seed, way, cosine)) return;
+            } else if (!path_end(ray, end, through, seed, way, cosine)) {
                 return;
             }
         }
     }
 
-    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, Way& way, float cosine) {
-        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, depth, way, cosine);
+    bool path_end(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, Way& way, float cosine) {
+        if (hit.triangle != kMiss) return path_shine(ray, hit, through, seed, way, cosine);
         if (o.unmapped_direct && g.emitters.sky_emitter() == EmitterSet::kNone && g.scene.sky.lit())
             sink.light(through, kNoElement, g.scene.sky.radiance(ray.direction));
         return false;
@@ -474,26 +608,26 @@ struct Gatherer {
 
     /// As pass_switches, along such a path.
     bool path_switches(const Ray& ray, const std::vector<Hit>& switches, size_t next, const Hit& end, Through& through,
-                       uint32_t seed, int depth, Way& way, float cosine) {
+                       uint32_t seed, Way& way, float cosine) {
         if constexpr (Sink::kSwitches) {
             for (; next < switches.size(); ++next) {
                 const Presence p = g.scene.presence(switches[next].triangle);
                 const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
                 Through there = through;
                 Way behind = way;
-                if (there.condition.require(g.scene.elements, p) &&
-                    path_shine(ray, switches[next], there, own_seed, depth, behind, cosine) &&
-                    path_switches(ray, switches, next + 1, end, there, own_seed, depth, behind, cosine))
-                    path_on(ray, go_on(ray, end, behind), there, own_seed, depth, behind, cosine);
+                const bool splits_here = there.condition.require(g.scene.elements, p);
+                splits += splits_here;
+                if (splits_here && path_shine(ray, switches[next], there, own_seed, behind, cosine) &&
+                    path_switches(ray, switches, next + 1, end, there, own_seed, behind, cosine))
+                    path_on(ray, go_on(ray, end, behind), there, own_seed, behind, cosine);
                 if (!through.condition.require(g.scene.elements, p.opposite())) return false;
             }
         }
-        return path_end(ray, end, through, seed, depth, way, cosine);
+        return path_end(ray, end, through, seed, way, cosine);
     }
 
     /// Light of one surface on such a path; true if some from behind gets through.
-    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, int depth, Way& way,
-                    float cosine) {
+    bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, Way& way, float cosine) {
         const uint8_t f = g.surfaces.flags(hit.triangle);
         if (is_dead(hit, f)) return false;
         const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
@@ -502,13 +636,29 @@ struct Gatherer {
             return false;
         }
         const SurfaceSample s = g.scene.surface(hit.triangle, hit.u, hit.v);
-        if (o.unmapped_direct && g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone)
-            sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission);
-        if (!mapped)
-            unmapped(ray, hit, through, s.reflectance, hash_combine(seed, way.segments), depth, cosine);
-        else if (sink.has_texels())
-            sink.texel(through, lit_texel(ray, hit), 1.0f);
-        return max_component(s.transmittance) > 0.0f && dims(hit, s, through, seed, way);
+        if (o.unmapped_direct && (f & SurfaceTable::kEmits) != 0)
+            sink.light(through, g.scene.instance_of(hit.triangle).light_set, s.emission * ray_share(ray, hit, cosine));
+        const bool first = way.segments == 0 && !is_switch(hit) && has_spots();
+        if (mapped) {
+            if (sink.has_texels()) sink.texel(through, lit_texel(ray, hit), 1.0f);
+            return max_component(s.transmittance) > 0.0f && dims(hit, s, through, seed, way);
+        }
+        // Russian roulette by reflectance and transmittance: on average no more ways leave a surface than meet it.
+        const float back = max_component(s.reflectance), on = max_component(s.transmittance);
+        const float all = std::max(back + on, 1.0f), goes_on = on / all;
+        unmapped(ray, hit, through, s.reflectance, back / all * chance_to_branch(), hash_combine(seed, way.segments),
+                 {first ? cosine * kInvPi : 0.0f, kChainSpots});
+        if (!(unit_float(hash_combine(seed, hit.triangle)) < goes_on)) return false;
+        through.color *= s.transmittance / goes_on;
+        return max_component(through.color) > 0.0f;
+    }
+
+    /// Share of such a path's ray in the light of an emissive triangle, beside the emitter samples of its start.
+    float ray_share(const Ray& ray, const Hit& hit, float cosine) const {
+        if (g.emitters.emitter_of(hit.triangle) == EmitterSet::kNone) return 1.0f;
+        const float facing = std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle)));
+        const float own = cosine * kInvPi;
+        return own / (own + g.emitters.triangle_pdf(hit.triangle, {hit.u, hit.v}, hit.t, facing));
     }
 };
 
