@@ -117,6 +117,7 @@ FUNCTIONS = {
     "ajar_runtime_page_size": (Result, [Handle, u32, uints, uints]),
     "ajar_runtime_page_dirty": (Result, [Handle, u32, P(Rect)]),
     "ajar_runtime_page_texels": (Result, [Handle, u32, P(uints), P(uints)]),
+    "ajar_runtime_page_scale": (Result, [Handle, u32, floats]),
     "ajar_runtime_read_irradiance": (Result, [Handle, u32, u32, floats, u64]),
     "ajar_runtime_patch_init": (None, [P(Patch)]),
     "ajar_runtime_add_patch": (Result, [P(Patch), P(c.c_uint16), u32, u32, floats, floats, u32, u32]),

@@ -269,6 +269,13 @@ ajar_runtime_result ajar_runtime_page_texels(ajar_runtime runtime, uint32_t page
     });
 }
 
+ajar_runtime_result ajar_runtime_page_scale(ajar_runtime runtime, uint32_t page, float* out_scale) {
+    return guarded([&] {
+        const auto r = handles().get(runtime);
+        required(out_scale) = page_of(*r, page).scale();
+    });
+}
+
 ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime runtime, uint32_t page, uint32_t channels, float* buffer,
                                                  uint64_t float_count) {
     return guarded([&] {

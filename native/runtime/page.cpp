@@ -2,6 +2,7 @@
 // Layout of DDS files: Microsoft, "Programming Guide for DDS" (DDS_HEADER and DDS_HEADER_DXT10).
 #include "page.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "error.h"
@@ -16,9 +17,12 @@ constexpr uint32_t kMagic = 0x20534444u;                      // "DDS "
 constexpr uint32_t kFourCcDx10 = 0x30315844u;                 // "DX10"
 constexpr uint32_t kR11G11B10Float = 26, kR8G8B8A8Unorm = 28; // DXGI_FORMAT
 
+constexpr uint32_t kScaleTag = 0x52414a41u; // "AJAR", before a float in the reserved words
+
 struct Image {
     uint32_t width, height;
     uint32_t* words;
+    float scale; ///< what 1 stands for
 };
 
 /// The image in an uncompressed 32 bit DDS file with a DX10 header and no mip maps.
@@ -35,7 +39,10 @@ Image find_image(FileView& file, uint32_t format, const std::string& path) {
     const uint32_t height = header[3], width = header[4];
     if (width == 0 || height == 0 || width > 65536 || height > 65536) refuse("wrong size");
     if (file.bytes().size() != sizeof header + uint64_t{width} * height * 4) refuse("its length does not fit its size");
-    return {width, height, reinterpret_cast<uint32_t*>(file.bytes().data() + sizeof header)};
+    float scale = 1.0f;
+    if (header[8] == kScaleTag) std::memcpy(&scale, &header[9], sizeof scale);
+    if (!(scale > 0.0f) || !std::isfinite(scale)) refuse("its scale is not a positive number");
+    return {width, height, reinterpret_cast<uint32_t*>(file.bytes().data() + sizeof header), scale};
 }
 
 std::string page_path(const std::string& directory, size_t index, const char* rest) {
@@ -61,6 +68,7 @@ Page::Page(const std::string& directory, size_t index)
     width_ = irradiance.width;
     height_ = irradiance.height;
     irradiance_ = irradiance.words;
+    scale_ = irradiance.scale;
     direction_ = direction.words;
 }
 
@@ -74,9 +82,9 @@ void Page::read_irradiance(uint32_t channels, float* out) const {
         const uint32_t* row = irradiance_ + size_t{y} * width_;
         for (uint32_t x = 0; x < width_; ++x, out += channels) {
             const Rgb e = unpack_irradiance(row[x]);
-            out[0] = e.r;
-            out[1] = e.g;
-            out[2] = e.b;
+            out[0] = e.r * scale_;
+            out[1] = e.g * scale_;
+            out[2] = e.b * scale_;
             if (channels == 4) out[3] = 1.0f;
         }
     }

@@ -291,6 +291,8 @@ TEST_F(RuntimeCalls, NullPointersAreRefused) {
     refused(bad, ajar_runtime_page_dirty(h, 0, nullptr));
     refused(bad, ajar_runtime_page_texels(h, 0, nullptr, &words));
     refused(bad, ajar_runtime_page_texels(h, 0, &words, nullptr));
+    refused(bad, ajar_runtime_page_scale(h, 0, nullptr));
+    refused(bad, ajar_runtime_page_scale(h, 9, floats), "page 9");
     refused(bad, ajar_runtime_read_irradiance(h, 0, 3, nullptr, 3 * 16 * 12));
     refused(bad, ajar_runtime_read_irradiance(h, 0, 2, floats, 4), "channels");
     refused(AJAR_RUNTIME_ERROR_BUFFER, ajar_runtime_read_irradiance(h, 0, 3, floats, 4), "floats");

@@ -394,6 +394,27 @@ TEST(RuntimeLight, IrradianceIsReadBottomRowFirst) {
     }
 }
 
+TEST(RuntimeLight, PagesInAnotherUnitAddUpInWatts) {
+    constexpr float kScale = 0x1p-24f; // what all of this light needs: without it, it would be black
+    kit::TermScene scene;
+    scene.add_page(2, 2);
+    std::vector<uint32_t> base(4, pack_r11g11b10f(Vec3(1e-8f, 2e-8f, 3e-8f) / kScale)), plain(4, pack_direction({}));
+    scene.content.pages[0].packed_irradiance = base;
+    scene.content.pages[0].packed_direction = plain;
+    scene.content.scale = kScale;
+    scene.add_element("lamp", "light_set", 0.5f);
+    scene.add_term({0}, {0, 1}, {4e-8f, 0, 0, 0, 4e-8f, 0}, {plain[0], plain[0]}, false);
+    kit::PackageFolder folder(scene);
+    kit::Runtime runtime(folder.path());
+    runtime.update();
+    float scale = 0.0f, rgb[12];
+    ASSERT_EQ(ajar_runtime_page_scale(runtime.handle(), 0, &scale), AJAR_RUNTIME_OK);
+    EXPECT_EQ(scale, kScale);
+    ASSERT_EQ(ajar_runtime_read_irradiance(runtime.handle(), 0, 3, rgb, 12), AJAR_RUNTIME_OK);
+    const float expected[12] = {3e-8f, 2e-8f, 3e-8f, 1e-8f, 4e-8f, 3e-8f, 1e-8f, 2e-8f, 3e-8f, 1e-8f, 2e-8f, 3e-8f};
+    for (int i = 0; i < 12; ++i) EXPECT_NEAR(rgb[i] / expected[i], 1.0f, 0x1p-5f) << i;
+}
+
 /// Share of a diffuse, infinitely high opening's light that passes a leaf of the opening's width,
 /// hinged at its edge, by counting rays.
 double passing_share(double angle) {

@@ -338,7 +338,7 @@ enum {
                                   0.5 covered but invalid (filled), 0 not covered */
     AJAR_LAYER_SH = 4,         /* 27 channels (coefficient-major RGB), radiance, tangent frame; keep_sh */
     AJAR_LAYER_ALBEDO = 5,     /* 3 channels, total hemispherical reflectance */
-    AJAR_LAYER_AHD = 6,        /* 2 channels of raw 32 bit words: R11G11B10F, RGBA8 (bit-copied) */
+    AJAR_LAYER_AHD = 6,        /* 2 channels of raw 32 bit words: R11G11B10F over the package's scale, RGBA8 */
     AJAR_LAYER_BOUNCE = 16     /* + b: 3 channels, irradiance of bounce b; keep_bounces */
 };
 /* Size of one page's layer: rows bottom-up, channels interleaved float32. */

@@ -142,11 +142,14 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_size(ajar_runtime runtime
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_dirty(ajar_runtime runtime, uint32_t page,
                                                              ajar_runtime_rect* out_rect);
 /* The page's texels, width * height words each, top row first, without gaps: R11G11B10F irradiance
- * and RGBA8 direction and ratio, as in the page's DDS files. Valid until release; updates write to
+ * (in units of ajar_runtime_page_scale) and RGBA8 direction and ratio, as in the page's DDS files. Valid until release; updates write to
  * them. */
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_texels(ajar_runtime runtime, uint32_t page,
                                                               const uint32_t** out_irradiance,
                                                               const uint32_t** out_direction);
+/* W/m^2 that 1 in a page's irradiance texels stands for: 1, but for scenes that are very dim or bright as a
+ * whole. Shaders multiply by it; ajar_runtime_read_irradiance has done so. */
+AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_scale(ajar_runtime runtime, uint32_t page, float* out_scale);
 /* Irradiance along the surface normal in W/m^2 as floats, BOTTOM row first as Blender's and OpenGL's
  * images are: channels is 3 (RGB) or 4 (RGBA, alpha 1); float_count = width * height * channels. */
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_read_irradiance(ajar_runtime runtime, uint32_t page,

@@ -90,6 +90,7 @@ void Job::bake(Progress& progress) {
     output_.weight_terms = in_weights(package_content(scene, output_.pages).elements, products);
     for (Warning& w : cut_warnings(scene, output_.bake.terms.cut, settings_.combinations))
         output_.warnings.push_back(std::move(w));
+    for (const Warning& w : output_.pages.warnings) output_.warnings.push_back(w);
     warn_of_lateness(settings_, progress.elapsed(), scene.name, output_.warnings);
     if (settings_.check_points == 0) return;
     output_.check =

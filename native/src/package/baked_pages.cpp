@@ -2,6 +2,7 @@
 #include "package/baked_pages.h"
 
 #include "package/baked_terms.h"
+#include "package/exposure.h"
 #include "package/fill_terms.h"
 #include "post/dilate.h"
 #include "post/stitch.h"
@@ -24,8 +25,10 @@ struct Assembler {
 
     void scatter();
     void stitch();
+    void collect_terms(ThreadPool& pool, Progress& progress);
+    void expose();
     void encode(ThreadPool& pool, Progress& progress);
-    void fill(ThreadPool& pool, Progress& progress);
+    void fill();
 };
 
 void Assembler::scatter() {
@@ -58,6 +61,22 @@ void Assembler::stitch() {
     if (out.seam_points != 0) solver->solve(out.irradiance);
 }
 
+void Assembler::collect_terms(ThreadPool& pool, Progress& progress) {
+    if (result.terms.terms.empty()) return;
+    const Working here(bookkeeping_effect(scene.elements));
+    out.discarded = result.terms.all_discarded;
+    out.terms = make_terms(receivers, result.terms, usable, solver.get(), pool, progress);
+}
+
+/// The unit of packed irradiance, and what does not fit into it.
+void Assembler::expose() {
+    std::vector<float> brightest = brightest_light(scene, out);
+    for (size_t t = 0; t < brightest.size(); ++t)
+        if (usable[t] == 0) brightest[t] = 0.0f;
+    out.scale = choose_scale(scene, brightest);
+    out.warnings = exposure_warnings(scene, receivers, brightest, out.scale);
+}
+
 void Assembler::encode(ThreadPool& pool, Progress& progress) {
     out.packed_irradiance.assign(state.size(), 0);
     out.packed_direction.assign(state.size(), pack_direction({}));
@@ -68,21 +87,16 @@ void Assembler::encode(ThreadPool& pool, Progress& progress) {
             // The shape is that of the gathered light: stitching changes the brightness, not the directions.
             Ahd ahd = fit_ahd(result.irradiance[r], &result.sh[size_t{r} * kShCount]);
             ahd.irradiance = out.irradiance[t];
-            out.packed_irradiance[t] = pack_r11g11b10f(ahd.irradiance);
+            out.packed_irradiance[t] = pack_r11g11b10f(ahd.irradiance / out.scale);
             out.packed_direction[t] = pack_direction(ahd);
-            clamped[i] += max_component(ahd.irradiance) > 64512.0f;
+            clamped[i] += max_component(ahd.irradiance) > kLargestPacked * out.scale;
         }
     });
     for (const uint64_t c : clamped) out.clamped_texels += c;
 }
 
-void Assembler::fill(ThreadPool& pool, Progress& progress) {
+void Assembler::fill() {
     const std::vector<uint32_t> source = nearest_known(scene.pages, usable, kFillRadius);
-    if (!result.terms.terms.empty()) {
-        const Working here(bookkeeping_effect(scene.elements));
-        out.discarded = result.terms.all_discarded;
-        out.terms = make_terms(receivers, result.terms, usable, solver.get(), pool, progress);
-    }
     for (size_t i = 0; i < source.size(); ++i) {
         out.validity[i] = state[i] == kValid ? 1.0f : state[i] == kRing ? 0.75f : state[i] == kInvalid ? 0.5f : 0.0f;
         if (source[i] == i) continue;
@@ -117,14 +131,17 @@ BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers,
     a.scatter();
     if (settings.stitch_seams != 0) a.stitch();
     progress.begin_stage(AJAR_STAGE_ENCODE, 1.0f);
+    a.collect_terms(pool, progress);
+    a.expose();
     a.encode(pool, progress);
-    a.fill(pool, progress);
+    a.fill();
     return std::move(a.out);
 }
 
 PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
     PackageContent c;
     c.name = scene.name;
+    c.scale = baked.scale;
     for (const Page& p : scene.pages) {
         PackagePage page;
         page.width = p.width;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/error.h"
 #include "encode/ahd.h"
 #include "package/manifest.h"
 #include "pass/bake.h"
@@ -29,6 +30,8 @@ struct BakedPages {
     uint64_t invalid_texels = 0;  ///< covered, but inside a solid; filled from neighbours
     uint64_t seam_points = 0;
     uint64_t clamped_texels = 0; ///< too bright for the packed format
+    float scale = 1.0f;          ///< W/m^2 that 1 in packed_irradiance stands for
+    std::vector<Warning> warnings;
 };
 
 /// Scatters receivers to their texels, stitches seams, fills gaps and packs (algorithms.md 1, 9).

@@ -3,6 +3,7 @@
 #include "package/dds.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 
 #include "base/error.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x20534444u;      // "DDS "
 constexpr uint32_t kFourCcDx10 = 0x30315844u; // "DX10"
+constexpr uint32_t kScaleTag = 0x52414a41u;   // "AJAR": a float that texels are multiplied by follows
 constexpr uint32_t kHeaderFlags = 0x100fu;    // caps, height, width, pitch, pixel format
 constexpr uint32_t kPixelFlagFourCc = 0x4u;
 constexpr uint32_t kCapsTexture = 0x1000u;
@@ -28,6 +30,8 @@ enum Word {
     kWordPitch = 5,
     kWordDepth = 6,
     kWordMips = 7,
+    kWordTag = 8, ///< first of 11 reserved words
+    kWordScale = 9,
     kWordPixelSize = 19,
     kWordPixelFlags = 20,
     kWordFourCc = 21,
@@ -50,7 +54,8 @@ uint32_t get_word(std::span<const uint8_t> bytes, size_t word) {
 
 } // namespace
 
-std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat format, std::span<const uint32_t> texels) {
+std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat format, std::span<const uint32_t> texels,
+                                float scale) {
     const size_t row = size_t(width) * words_per_texel(format);
     if (width == 0 || height == 0 || texels.size() != row * height)
         throw Error(AJAR_ERROR_ARGUMENT, "DDS image size and texel count differ");
@@ -63,6 +68,8 @@ std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat forma
     put_word(bytes, kWordPitch, static_cast<uint32_t>(row) * 4);
     put_word(bytes, kWordDepth, 1);
     put_word(bytes, kWordMips, 1);
+    if (scale != 1.0f)
+        put_word(bytes, kWordTag, kScaleTag), put_word(bytes, kWordScale, std::bit_cast<uint32_t>(scale));
     put_word(bytes, kWordPixelSize, 32);
     put_word(bytes, kWordPixelFlags, kPixelFlagFourCc);
     put_word(bytes, kWordFourCc, kFourCcDx10);

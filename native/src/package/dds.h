@@ -22,7 +22,9 @@ struct DdsImage {
 };
 
 /// File bytes with a DX10 header. Texels come bottom row first; the file holds the top row first.
-std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat format, std::span<const uint32_t> texels);
+/// scale: what 1 in the texels stands for; kept in words that DDS reserves, unless it is 1.
+std::vector<uint8_t> encode_dds(uint32_t width, uint32_t height, DdsFormat format, std::span<const uint32_t> texels,
+                                float scale = 1.0f);
 
 /// Reads what encode_dds writes. Throws Error(AJAR_ERROR_IO) naming `name` for anything else.
 DdsImage decode_dds(std::span<const uint8_t> bytes, const std::string& name);

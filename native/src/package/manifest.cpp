@@ -52,7 +52,7 @@ private:
     uint64_t state_ = 0x9e3779b97f4a7c15ull;
 };
 
-Json page_json(const PackagePage& page, size_t index, bool overlap_pictures) {
+Json page_json(const PackagePage& page, size_t index, float scale, bool overlap_pictures) {
     const PageFiles files(index);
     Json json;
     json["width"] = page.width;
@@ -64,6 +64,7 @@ Json page_json(const PackagePage& page, size_t index, bool overlap_pictures) {
                       {"direction", files.packed_direction},
                       {"direction_png", files.direction_png},
                       {"layout", "ahd-r11g11b10f-rgba8"}};
+    if (scale != 1.0f) json["packed"]["scale"] = scale;
     if (overlap_pictures) {
         json["overlap"] = files.overlap;
         json["bytes"] = files.bytes;
@@ -237,7 +238,8 @@ std::string manifest_json(const PackageContent& content, const TermsSummary* ter
     json["units"] = {{"length", "m"}, {"irradiance", "W/m^2"}, {"color", "scene-linear Rec.709"}};
     json["pages"] = Json::array();
     for (size_t i = 0; i < content.pages.size(); ++i)
-        json["pages"].push_back(page_json(content.pages[i], i, terms != nullptr && content.overlap_pictures));
+        json["pages"].push_back(
+            page_json(content.pages[i], i, content.scale, terms != nullptr && content.overlap_pictures));
     json["instances"] = Json::array();
     for (const PackageInstance& instance : content.instances) json["instances"].push_back(instance_json(instance));
     add_term_lists(json, content, terms);

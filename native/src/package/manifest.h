@@ -19,7 +19,7 @@ struct PackagePage {
     std::span<const float> samples;              ///< gather rays
     std::span<const float> validity;             ///< 1 valid, 0.75 outside its chart, 0.5 filled, 0 not covered
     std::span<const float> sh;                   ///< 27 channels, coefficient-major RGB; empty if not kept
-    std::span<const uint32_t> packed_irradiance; ///< R11G11B10F
+    std::span<const uint32_t> packed_irradiance; ///< R11G11B10F, of irradiance over the scale
     std::span<const uint32_t> packed_direction;  ///< RGBA8, r in the low byte
 };
 
@@ -78,6 +78,7 @@ struct PackageContent {
     std::vector<PackageLight> lights;
     std::vector<PackageElement> elements;
     std::vector<PackageTerm> terms;
+    float scale = 1.0f; ///< W/m^2 that 1 in packed irradiance stands for, a power of two
     LightPatchPlanes light_patches = LightPatchPlanes::none;
     bool overlap_pictures = false; ///< whether pictures of what texels take are written (overlap_picture.h)
     double discarded = 0.0;        ///< share of all terms' light at texels that do not keep it

@@ -45,8 +45,8 @@ std::vector<std::string> sh_channels() {
     return names;
 }
 
-std::vector<uint8_t> irradiance_dds(const PackagePage& page) {
-    return encode_dds(page.width, page.height, DdsFormat::kR11G11B10Float, page.packed_irradiance);
+std::vector<uint8_t> irradiance_dds(const PackagePage& page, float scale) {
+    return encode_dds(page.width, page.height, DdsFormat::kR11G11B10Float, page.packed_irradiance, scale);
 }
 
 std::vector<uint8_t> direction_dds(const PackagePage& page) {
@@ -58,23 +58,24 @@ std::optional<TermsFile> make_terms(const PackageContent& content) {
     if (content.elements.empty() && content.terms.empty()) return std::nullopt;
     std::vector<PageChecksums> sums;
     for (const PackagePage& page : content.pages)
-        sums.push_back({terms::file_checksum(irradiance_dds(page)), terms::file_checksum(direction_dds(page))});
+        sums.push_back(
+            {terms::file_checksum(irradiance_dds(page, content.scale)), terms::file_checksum(direction_dds(page))});
     return make_terms_file(content, sums);
 }
 
-void write_packed(const PackagePage& page, size_t index, const fs::path& folder, bool synced) {
+void write_packed(const PackagePage& page, size_t index, float scale, const fs::path& folder, bool synced) {
     const PageFiles files(index);
-    write_file(folder / files.packed_irradiance, irradiance_dds(page), synced);
+    write_file(folder / files.packed_irradiance, irradiance_dds(page, scale), synced);
     write_file(folder / files.packed_direction, direction_dds(page), synced);
 }
 
-void write_page(const PackagePage& page, size_t index, const fs::path& folder) {
+void write_page(const PackagePage& page, size_t index, float scale, const fs::path& folder) {
     const PageFiles files(index);
     const uint32_t w = page.width, h = page.height;
     write_file_synced(folder / files.irradiance, encode_exr(w, h, {"R", "G", "B"}, page.irradiance));
     write_file_synced(folder / files.quality, encode_quality(page));
     if (!page.sh.empty()) write_file_synced(folder / files.sh, encode_exr(w, h, sh_channels(), page.sh));
-    write_packed(page, index, folder, true);
+    write_packed(page, index, scale, folder, true);
     write_file_synced(folder / files.direction_png, encode_png(w, h, page.packed_direction));
 }
 
@@ -162,7 +163,7 @@ void carry_over(const fs::path& existing, const fs::path& temporary) {
 void write_runtime_files(const PackageContent& content, const fs::path& folder) {
     for (size_t i = 0; i < content.pages.size(); ++i) {
         check_page(content.pages[i], i);
-        write_packed(content.pages[i], i, folder, false);
+        write_packed(content.pages[i], i, content.scale, folder, false);
     }
     if (const std::optional<TermsFile> terms = make_terms(content))
         write_file(folder / terms::kFileName, terms->bytes, false);
@@ -173,7 +174,7 @@ void write_package(const PackageContent& content, const fs::path& directory) {
     const std::optional<TermsFile> terms_file = make_terms(content);
     const std::string manifest = manifest_json(content, terms_file ? &terms_file->summary : nullptr);
     const auto fill = [&](const fs::path& folder) {
-        for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, folder);
+        for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, content.scale, folder);
         if (terms_file) write_file_synced(folder / terms::kFileName, terms_file->bytes);
         if (terms_file && content.overlap_pictures) write_overlap(content, *terms_file, folder);
         if (content.light_patches != LightPatchPlanes::none) write_light_patches(content, folder);

@@ -91,7 +91,7 @@ void Builder::add_terms() {
         const StoredTerm& stored = lists_.terms[i];
         t.layout =
             static_cast<uint32_t>(stored.is_signed ? terms::Layout::signed_words : terms::Layout::unsigned_words);
-        t.scale = stored.scale;
+        t.scale = std::clamp(stored.scale / content_.scale, 0x1p-126f, 0x1p127f); // sums are in the pages' unit
         t.receivers = stored.texels;
         out_.terms.push_back(t);
         summary_.terms.push_back({stored.is_signed, stored.scale, stored.texels, 0});
