@@ -281,6 +281,50 @@ TEST(HardLight, PowerZeroOrLessGivesExactlyNothing) {
     for (float v : bake.layer(AJAR_LAYER_IRRADIANCE).data) EXPECT_EQ(v, 0.0f);
 }
 
+TEST(HardLight, NegativeLightIsNothingAndNamed) {
+    kit::Scene scene;
+    scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({1, 1, 1}), scene.page(8, 8), "floor");
+    ajar_light_desc d = lamp(AJAR_LIGHT_POINT, "dark lamp");
+    d.energy = -100.0f;
+    scene.light(d, kit::translation(0, 0, 1).data());
+    scene.instance(scene.mesh(kit::plane(1.0f, 1.0f, false)), scene.emitter({-3, 2, 2}), AJAR_NONE, "glow");
+    scene.sky_image(scene.texture({-1, 2, 2, 1, -1, 2, 2, 1}, 2, 1), {1, 1, 1});
+    scene.commit();
+    const auto warnings = kit::scene_warnings(scene);
+    EXPECT_TRUE(kit::has_warning(warnings, "dark lamp", "negative"));
+    EXPECT_TRUE(kit::has_warning(warnings, "material", "negative"));
+    EXPECT_TRUE(kit::has_warning(warnings, "texture", "2 texels of the sky's image are below 0"));
+    const kit::Bake bake(scene, kit::settings(1));
+    expect_finite_layers(bake);
+    const kit::Layer e = bake.layer(AJAR_LAYER_IRRADIANCE);
+    for (size_t i = 0; i < e.data.size(); i += 3) {
+        EXPECT_EQ(e.data[i], 0.0f);
+        EXPECT_GT(e.data[i + 1], 0.0f);
+    }
+}
+
+TEST(HardLight, WhatDiffuseRaysDoNotSeeNeitherShinesNorReflects) {
+    // A glowing white sheet over a floor, itself lit from below: seen, it brightens the floor in both ways.
+    for (const bool seen : {true, false}) {
+        kit::Scene scene;
+        scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({0, 0, 0}), scene.page(8, 8), "floor");
+        scene.visibility = seen ? AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW : AJAR_VISIBLE_SHADOW;
+        scene.instance(scene.mesh(kit::plane(0.5f, 1.0f, false)), scene.emitter({3, 3, 3}, {0.8f, 0.8f, 0.8f}),
+                       scene.page(8, 8), "sheet");
+        scene.point_light({0, 0, 0.9f}, 500.0f, 0.0f, true);
+        scene.commit();
+        ajar_settings s = kit::settings(1);
+        s.check_points = 64;
+        const kit::Bake bake(scene, s);
+        for (const float v : bake.layer(AJAR_LAYER_IRRADIANCE, 0).data) {
+            if (seen)
+                EXPECT_GT(v, 0.1f);
+            else
+                EXPECT_EQ(v, 0.0f);
+        }
+    }
+}
+
 TEST(HardLight, SizesOfZeroAreFinite) {
     for (uint32_t type :
          {AJAR_LIGHT_POINT, AJAR_LIGHT_SPOT, AJAR_LIGHT_SUN, AJAR_LIGHT_AREA_RECTANGLE, AJAR_LIGHT_AREA_ELLIPSE}) {

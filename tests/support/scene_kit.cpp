@@ -187,6 +187,7 @@ uint32_t Scene::instance(uint32_t mesh, uint32_t material, uint32_t page, const 
     d.materials = &material;
     d.element = current_switch;
     d.open_pose = open_pose;
+    d.visibility = visibility;
     d.light_set = current_set;
     d.bake_side = bake_side;
     if (page != AJAR_NONE) {

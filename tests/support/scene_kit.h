@@ -59,6 +59,8 @@ public:
     uint32_t current_switch = AJAR_NONE, current_set = AJAR_NONE;
     bool open_pose = false;
     uint32_t bake_side = AJAR_SIDE_FRONT; ///< of the next instances
+    /// AJAR_VISIBLE_* of the next instances.
+    uint32_t visibility = AJAR_VISIBLE_GATHER | AJAR_VISIBLE_SHADOW;
     void sky(Float3 radiance);
     /// Equirectangular image (see ajar_sky_desc) times radiance.
     void sky_image(uint32_t texture, Float3 radiance);

@@ -102,7 +102,7 @@ EmitterSet Baker::find_bright_texels() {
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r)
             level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
-        for (const uint32_t r : bright_receivers(s_.receivers, level)) {
+        for (const uint32_t r : bright_receivers(s_.scene, s_.receivers, level)) {
             Vec4& radiance = radiance_[s_.receivers.texel[r]];
             bright.push_back(bright_texel(s_.scene, s_.receivers, r));
             bright.back().radiance = Vec3(radiance);

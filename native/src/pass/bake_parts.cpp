@@ -40,7 +40,8 @@ BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receive
     return out;
 }
 
-std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const std::vector<float>& luminance_of) {
+std::vector<uint32_t> bright_receivers(const Snapshot& scene, const LightmapReceivers& receivers,
+                                       const std::vector<float>& luminance_of) {
     double mean = 0.0, weight = 0.0;
     for (uint32_t r = 0; r < receivers.count(); ++r) {
         const double area = double(receivers.texel_size[r]) * receivers.texel_size[r];
@@ -50,7 +51,9 @@ std::vector<uint32_t> bright_receivers(const LightmapReceivers& receivers, const
     const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
     std::vector<uint32_t> out;
     for (uint32_t r = 0; r < receivers.count(); ++r)
-        if (receivers.full[r] != 0 && receivers.cut[r] == 0 && luminance_of[r] > threshold) out.push_back(r);
+        if (receivers.full[r] != 0 && receivers.cut[r] == 0 && luminance_of[r] > threshold &&
+            scene.is_gathered(receivers.triangle[r]))
+            out.push_back(r);
     return out;
 }
 

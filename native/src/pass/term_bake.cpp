@@ -218,7 +218,7 @@ EmitterSet TermBaker::find_bright_texels() {
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r)
             level[r] = luminance(source_.total(table_, r) * s_.receivers.albedo[r]) * kInvPi;
-        for (const uint32_t r : bright_receivers(s_.receivers, level)) {
+        for (const uint32_t r : bright_receivers(s_.scene, s_.receivers, level)) {
             bright.push_back(bright_texel(s_.scene, s_.receivers, r));
             bright.back().radiance = source_.total(table_, r) * s_.receivers.albedo[r] * kInvPi;
             radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;

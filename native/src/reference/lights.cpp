@@ -35,7 +35,7 @@ Lights::Lights(const World& world, const std::vector<float>& weights) : world_(w
     double total = 0.0;
     for (uint32_t t = 0; t < s.triangles.size(); ++t) {
         const float set = weight(s.instance_of(t).light_set);
-        if (!s.materials[s.triangles[t].material].emits || !(set > 0.0f)) continue;
+        if (!s.materials[s.triangles[t].material].emits || !s.is_gathered(t) || !(set > 0.0f)) continue;
         Pcg random(t, 0x7e57);
         double power = 0.0;
         for (int i = 0; i < kEmissionProbes; ++i) {

@@ -82,7 +82,7 @@ EmitterSample EmitterSet::sample_bright(const Cluster& c, const Vec3& p, Vec2 u)
     const float cosine = -glm::dot(to, t.normal) / length;
     if (!(cosine > 0.0f)) return {};
     const float density = luminance(t.radiance) / c.power * length2 / cosine;
-    return {to / length, length, q, t.radiance / density, density, true, false, t.texel, 1.0f / density};
+    return {to / length, length, q, t.radiance / density, density, true, false, Vec3(0.0f), t.texel, 1.0f / density};
 }
 
 } // namespace ajar

@@ -40,7 +40,7 @@ EmitterSet::EmitterSet(const Snapshot& scene, ThreadPool& pool, Progress& progre
 void EmitterSet::collect(ThreadPool& pool, Progress& progress) {
     std::vector<uint32_t> candidates;
     for (uint32_t t = 0; t < scene_.triangles.size(); ++t)
-        if (scene_.materials[scene_.triangles[t].material].emits) candidates.push_back(t);
+        if (scene_.materials[scene_.triangles[t].material].emits && scene_.is_gathered(t)) candidates.push_back(t);
     cells_ = std::make_shared<const EmissionCells>(scene_, candidates, pool, progress);
     for (const uint32_t t : candidates) {
         const float area = scene_.area(t), power = cells_->mean(t) * area;
@@ -188,7 +188,8 @@ EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const
             s.weight,
             0.0f,
             light.casts_shadow,
-            light.type == Light::Type::point || light.type == Light::Type::spot};
+            light.type == Light::Type::point || light.type == Light::Type::spot,
+            light.area > 0.0f && light.spread_tan == 0.0f ? light.axis : Vec3(0.0f)};
 }
 
 EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {

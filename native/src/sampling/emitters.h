@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -22,8 +23,17 @@ struct EmitterSample {
     float pdf = 0.0f;      ///< per steradian inside this emitter; 0 for lamps, which rays never hit
     bool casts_shadow = true;
     bool point_like = false;      ///< a point or spot lamp: as strong in every direction nearby
+    Vec3 lobe{0.0f};              ///< an area lamp whose light falls with the cosine to this; 0: other emitters
     uint32_t texel = 0xffffffffu; ///< bright texel: page texel whose light it is
     float inverse_density = 0.0f; ///< bright texel: weight = radiance * inverse_density
+
+    /// Turns direction and distance to those from another point, to look whether the target is seen from there.
+    void see_from(const Vec3& p) {
+        if (!(distance < std::numeric_limits<float>::infinity())) return;
+        const Vec3 to = target - p;
+        distance = glm::length(to);
+        direction = to / std::max(distance, 1e-30f);
+    }
 };
 
 /// A lightmap texel that is so bright that it is worth aiming at: a parallelogram that reflects
@@ -49,6 +59,8 @@ public:
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
     /// The lamp, or null for other emitters.
     const Light* lamp(uint32_t e) const { return is_lamp(e) ? &scene_.lights[emitters_[e].index] : nullptr; }
+    /// A lamp whose beam may end within a texel.
+    bool is_narrow(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].is_narrow(); }
     /// A lamp whose direct light is not stored.
     bool is_primary(uint32_t e) const { return is_lamp(e) && scene_.lights[emitters_[e].index].primary; }
     /// What sampling an emitter counts as.

@@ -43,6 +43,8 @@ struct Light {
     void move(const DVec3& offset);
     /// A lamp without extent has one direction from each receiver.
     bool is_delta() const { return area == 0.0f && radius == 0.0f; }
+    /// A spot, or an area lamp with a spread: its light ends at a cone.
+    bool is_narrow() const { return type == Type::spot || spread_tan != 0.0f; }
     bool dark() const { return !(max_component(intensity) > 0.0f); }
 };
 

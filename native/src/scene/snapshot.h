@@ -100,6 +100,8 @@ struct Snapshot {
         const Instance& i = instance_of(triangle);
         return {i.element, i.element == kNoElement || i.open_pose || elements[i.element].kind == ElementKind::toggle};
     }
+    /// Whether rays that gather diffuse light meet a triangle; others neither shine nor reflect.
+    bool is_gathered(uint32_t triangle) const { return (instance_of(triangle).visibility & AJAR_VISIBLE_GATHER) != 0; }
     bool has_switches() const;
     MeshPoint mesh_point(uint32_t triangle, float u, float v) const {
         return {instance_of(triangle).mesh, triangles[triangle].source, u, v};

@@ -35,6 +35,15 @@ std::vector<T> copy_as(const float* source, size_t count) {
     return out;
 }
 
+bool is_negative(const float* texel) { return std::min({texel[0], texel[1], texel[2]}) < 0.0f; }
+
+/// Texels of an image with a colour below 0.
+size_t negative_texels(const Texture& t) {
+    size_t count = 0;
+    for (size_t i = 0; i + 3 < t.floats.size(); i += 4) count += is_negative(&t.floats[i]);
+    return count;
+}
+
 Affine affine_of(const double* m, const std::string& culprit) {
     Affine a;
     for (int i = 0; i < 12; ++i) {
@@ -55,9 +64,20 @@ bool closure_emits(const ajar_closure& c) {
     return c.type == AJAR_CLOSURE_EMISSION && has_weight(c) && may_be_positive(c.color) && may_be_positive(c.strength);
 }
 
+/// Whether an input's constant, or the image that it is multiplied by, is below 0 somewhere.
+bool may_be_negative(const ajar_input& in, const std::vector<Texture>& textures) {
+    if (in.invert != 0)
+        return in.texture == AJAR_NONE && in.color_layer == AJAR_NONE &&
+               std::max({in.value[0], in.value[1], in.value[2]}) > 1.0f;
+    if (std::min({in.value[0], in.value[1], in.value[2]}) < 0.0f) return true;
+    return in.texture < textures.size() && negative_texels(textures[in.texture]) != 0;
+}
+
 bool closure_transmits(const ajar_closure& c) {
     return c.type == AJAR_CLOSURE_TRANSPARENT && has_weight(c) && may_be_positive(c.color);
 }
+
+constexpr const char* kNegative = "gives negative light, which counts as 0: a package stores no light below 0";
 
 /// World bounds of an instance.
 struct Extent {
@@ -149,14 +169,18 @@ uint32_t SnapshotBuilder::add_material(const ajar_material_desc& d) {
     m.closures.assign(d.closures, d.closures + d.closure_count);
     m.one_sided = d.one_sided != 0;
     size_t bad = 0;
+    bool negative = false;
     for (ajar_closure& c : m.closures) {
         require(c.type <= AJAR_CLOSURE_TRANSPARENT, AJAR_ERROR_ARGUMENT, "has a closure of unknown type", m.name);
         for (ajar_input* in : {&c.weight_a, &c.weight_b, &c.color, &c.strength, &c.metallic, &c.roughness})
             bad += clean_input(*in);
         if (!std::isfinite(c.specular)) c.specular = 0.0f, ++bad;
         m.emits |= closure_emits(c);
+        negative |= c.type == AJAR_CLOSURE_EMISSION &&
+                    (may_be_negative(c.color, snapshot_->textures) || may_be_negative(c.strength, snapshot_->textures));
         m.transmits |= closure_transmits(c);
     }
+    if (negative) warn(m.name, kNegative);
     if (bad != 0) warn(m.name, std::to_string(bad) + " material values are not finite and count as 0");
     snapshot_->materials.push_back(std::move(m));
     return static_cast<uint32_t>(snapshot_->materials.size() - 1);
@@ -255,6 +279,8 @@ uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
         require(std::isfinite(v), AJAR_ERROR_INPUT,
                 "has a value that is not finite; set its power, colour and size again", name);
     check_element(d.light_set, true, name);
+    const Vec3 strength = Vec3(d.color[0], d.color[1], d.color[2]) * d.energy;
+    if (is_negative(&strength.x)) warn(name, kNegative);
     snapshot_->lights.push_back(make_light(d, name, affine_of(d.transform, name)));
     snapshot_->lights.back().light_set = d.light_set;
     return static_cast<uint32_t>(snapshot_->lights.size() - 1);
@@ -277,11 +303,17 @@ void SnapshotBuilder::set_sky(const ajar_sky_desc& d) {
     sky.color = glm::max(Vec3(d.color[0], d.color[1], d.color[2]), Vec3(0.0f));
     require(is_finite(sky.color), AJAR_ERROR_INPUT, "sky colour is not finite; set its colour and strength again",
             "world");
+    if (sky.present && is_negative(d.color)) warn("world", kNegative);
     if (d.type == AJAR_SKY_EQUIRECT) {
         require(d.texture < snapshot_->textures.size(), AJAR_ERROR_ARGUMENT, "sky names a texture that was not added",
                 "world");
         sky.has_image = true;
         sky.image = snapshot_->textures[d.texture];
+        if (const size_t count = negative_texels(sky.image))
+            warn(sky.image.name, std::to_string(count) +
+                                     " texels of the sky's image are below 0 and count as 0; a package stores no light "
+                                     "below 0");
+        for (float& v : sky.image.floats) v = std::max(v, 0.0f);
     }
     snapshot_->sky = std::move(sky);
 }
