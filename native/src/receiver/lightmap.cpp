@@ -17,6 +17,8 @@ constexpr int kAlbedoSamples = 16;
 constexpr uint32_t kSidePoints = 16; ///< points of a texel that tell into which parts a wall cuts it
 constexpr float kLowCover = 0.125f;  ///< texel edges: what hangs that low over a surface hides it
 constexpr float kUpright = 0.2f;     ///< cosine between normals
+constexpr float kFlat = 0.9999f;     ///< cosine between normals of what counts as one plane
+constexpr float kUneven = 0.02f;     ///< texel edges by which positions of equal cells may be off
 constexpr uint32_t kPositionSalt = 0xa11ce5u;
 /// Cosine between the shading and the geometric normal of a texel from which on the surface itself is asked what is
 /// below it. At this angle, 0.26 degrees, 5e-6 of an even light comes from there.
@@ -73,14 +75,6 @@ TexelKey key_of(const Snapshot& scene, uint32_t page_index, uint32_t texel, Texe
             part_bits(x % kTileEdge) | (part_bits(y % kTileEdge) << 1)};
 }
 
-/// Columns of the nearly square grid of count cells; count is 1..16.
-uint32_t grid_columns(uint32_t count) {
-    uint32_t columns = 1;
-    while (columns * columns < count) ++columns;
-    while (count % columns != 0) ++columns;
-    return columns;
-}
-
 /// A point of a texel on a triangle.
 struct TexelPoint {
     uint32_t triangle;
@@ -123,6 +117,7 @@ struct Builder {
     Spots scattered_spots(uint32_t receiver, uint32_t base);
     void leave_covered(uint32_t receiver, uint32_t base, Spots& spots);
     void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
+    bool is_open(uint32_t receiver, const Spots& spots) const;
     void join_moved();
     void join_planes();
     void find_sharing(const Tile& tile);
@@ -409,8 +404,36 @@ void Builder::build(uint32_t r) {
     const auto leans = [&](const Spot& s) { return !(glm::dot(s.plane, out.frame[r].z) >= kLean); };
     if (std::any_of(spots.begin(), spots.end(), leans))
         for (const Spot& s : spots) planes[r].push_back(s.plane);
+    out.open[r] = is_open(r, spots);
     const auto is_moved = [](const Spot& s) { return s.moved.exists(); };
     if (std::any_of(spots.begin(), spots.end(), is_moved)) moved[r] = std::move(spots);
+}
+
+/// Whether the positions are the middles of equal cells of one plane, whose outer corners see each other and are not
+/// covered.
+bool Builder::is_open(uint32_t r, const Spots& spots) const {
+    const uint32_t columns = grid_columns(out.positions_per_texel), rows = out.positions_per_texel / columns;
+    if (columns < 2 || rows < 2 || out.whole[r] == 0 || out.cut[r] != 0) return false;
+    const auto [begin, end] = runs[r];
+    const Vec3 n = scene.geometric_normal(out.triangle[r]);
+    for (uint32_t i = begin; i < end; ++i)
+        if (glm::dot(scene.geometric_normal(coverage.fragments[i].triangle), n) < kFlat) return false;
+    const Vec3 x = spots[1].origin - spots[0].origin, y = spots[columns].origin - spots[0].origin;
+    for (uint32_t k = 0; k < spots.size(); ++k) {
+        const Vec3 expected =
+            spots[0].origin + static_cast<float>(k % columns) * x + static_cast<float>(k / columns) * y;
+        if (spots[k].moved.exists() || glm::distance(spots[k].origin, expected) > kUneven * out.texel_size[r])
+            return false;
+    }
+    const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
+    const Vec3 low = spots[0].origin - 0.49f * (x + y), high = spots.back().origin + 0.49f * (x + y);
+    const Vec3 side = spots[0].origin + (static_cast<float>(columns) - 0.51f) * x - 0.49f * y;
+    const Spot corners[4] = {{low, {}}, {side, {}}, {high, {}}, {low + high - side, {}}};
+    for (int k = 0; k < 4; ++k) {
+        const Vec3 a = corners[k].origin, b = corners[(k + 1) % 4].origin;
+        if (is_covered(r, corners[k]) || tracer.occluded({a + up, b - a, 0.0f, 1.0f}, kMaskWall)) return false;
+    }
+    return true;
 }
 
 /// Rows of the receivers with moved positions, in their order.
@@ -516,6 +539,7 @@ LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, co
     b.out.full.resize(count);
     b.out.cut.resize(count);
     b.out.whole.resize(count);
+    b.out.open.resize(count);
     b.out.of_texel.assign(scene.texel_count(), kNoReceiver);
     for (uint32_t r = 0; r < count; ++r) b.out.of_texel[b.out.texel[r]] = r;
     b.out.positions.resize(count * positions_per_texel);

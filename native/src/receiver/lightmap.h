@@ -21,6 +21,14 @@ inline constexpr uint32_t kNoReceiver = 0xffffffffu;
 inline constexpr float kSideHeight = 0.25f;
 inline constexpr uint32_t kTileEdge = 16, kTileReceivers = kTileEdge * kTileEdge;
 
+/// Columns of the nearly square grid of count cells; count is 1..16.
+constexpr uint32_t grid_columns(uint32_t count) {
+    uint32_t columns = 1;
+    while (columns * columns < count) ++columns;
+    while (count % columns != 0) ++columns;
+    return columns;
+}
+
 /// Every lightmap texel that wants light, structure of arrays. World space.
 struct LightmapReceivers {
     uint32_t positions_per_texel = 1;
@@ -34,6 +42,7 @@ struct LightmapReceivers {
     std::vector<uint8_t> full;      ///< one triangle covers the whole texel
     std::vector<uint8_t> whole;     ///< the chart covers the whole texel
     std::vector<uint8_t> cut;       ///< a wall runs through the texel; its positions lie on one side of it
+    std::vector<uint8_t> open;      ///< a flat texel that nothing parts or covers: rays may start all over it
     std::vector<uint8_t>
         shares; ///< texels of its 2x2 block with like normals see each other: coarse light may be shared
     std::vector<uint32_t> of_texel; ///< [page texels] receiver, or kNoReceiver
@@ -70,6 +79,12 @@ struct LightmapReceivers {
     Vec3 shown_origin(uint32_t receiver) const {
         const MovedPosition m = moved_from(receiver, 0);
         return m.exists() ? m.origin : *origins(receiver);
+    }
+    /// The point at u in [0,1)^2 of the part of an open texel that a position is the middle of.
+    Vec3 in_cell(uint32_t receiver, uint32_t position, const Vec2& u) const {
+        const Vec3* o = origins(receiver);
+        const Vec3 x = o[1] - o[0], y = o[grid_columns(positions_per_texel)] - o[0];
+        return o[position] + (u.x - 0.5f) * x + (u.y - 0.5f) * y;
     }
     const Vec3* origins(uint32_t receiver) const { return &positions[size_t{receiver} * positions_per_texel]; }
 };

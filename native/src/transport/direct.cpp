@@ -17,6 +17,13 @@ constexpr float kGoOn = 0.25f;  ///< chance of a packet to go on although they f
 /// Numbers that n samples take up: pairs never share them with other samples.
 constexpr uint32_t even(uint32_t n) { return (n + 1) & ~1u; }
 
+/// A point of a position's part of the texel, one of a sequence over a receiver's samples: what is left of the number
+/// that chose among the positions, and multiples of the plastic number's inverse (Roberts 2018).
+Vec2 place_in_cell(uint32_t sample, uint32_t hash, float chosen, uint32_t positions) {
+    const float scaled = chosen * static_cast<float>(positions);
+    return {scaled - std::floor(scaled), unit_float(hash + sample * 0xc13fa9a9u)};
+}
+
 /// Eight receivers' samples that wait for their shadow rays.
 struct ShadowPacket {
     RayPacket rays;
@@ -87,7 +94,10 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
                    position = std::min(static_cast<uint32_t>(spread.y * static_cast<float>(positions)), positions - 1);
     Vec3 p;
     if (!start_at(r, position, packet, lane, p)) return false;
-    const EmitterSample s = g.emitters.sample(emitter, p, {u, spread.x});
+    const bool is_open = g.receivers.open[r] != 0;
+    const Vec3 start = is_open ? g.receivers.in_cell(r, position, place_in_cell(sample, h, spread.y, positions)) : p;
+    EmitterSample s = g.emitters.sample(emitter, g.emitters.is_narrow(emitter) ? start : p, {u, spread.x});
+    if (is_near_lamp(g.receivers, r, s)) s = g.emitters.sample(emitter, p, {u, spread.x});
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f) || !g.receivers.is_above(r, position, s.direction))
         return false;
@@ -95,12 +105,13 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     float rays = mis.gather * hemisphere_pdf(w.z, mis.share); // per steradian
     if (mis.aims != nullptr) rays += mis.aims->density(local, position, s.direction);
     const float weight = s.pdf > 0.0f ? own / (own + rays) : near_lamp_factor(g.receivers, r, position, p, s);
-    packet.sample[lane] = s;
     packet.scale[lane] = weight / chance;
     packet.emitter[lane] = emitter;
     packet.local.set(lane, w, packet.book_scale);
     packet.lit[lane] = !s.casts_shadow;
-    packet.rays.set(lane, p, s.direction, shadow_end(g.tracer, s));
+    if (is_open) s.see_from(start);
+    packet.sample[lane] = s;
+    packet.rays.set(lane, start, s.direction, shadow_end(g.tracer, s));
     return is_finite(s.weight * packet.scale[lane]);
 }
 

@@ -24,21 +24,58 @@ inline Frame cell_frame(const LightmapReceivers& receivers, uint32_t r, uint32_t
     return frame_from_tangent(z, std::abs(glm::dot(f.x, z)) < std::abs(glm::dot(f.y, z)) ? f.x : f.y, 1.0f);
 }
 
-/// Close above a texel a lamp's irradiance varies too steeply for its few positions. The mean over
-/// the cell of a position is the lamp's vector irradiance of the cell, along the shading normal, over its area; this
-/// is that mean over the value at the position, 1 far away and at chart borders.
+/// Irradiance at the origin with unit normal n from a rectangle of unit radiance (Lambert 1760): corners in order,
+/// clipped to the horizon, the angles of the edges times the cosines of their planes.
+inline float rectangle_irradiance(const Vec3 (&corner)[4], const Vec3& n) {
+    Vec3 kept[5];
+    int count = 0;
+    for (int i = 0; i < 4; ++i) {
+        const Vec3 &a = corner[i], &b = corner[(i + 1) % 4];
+        const float over_a = glm::dot(a, n), over_b = glm::dot(b, n);
+        if (over_a > 0.0f) kept[count++] = a;
+        if ((over_a > 0.0f) != (over_b > 0.0f)) kept[count++] = a + (b - a) * (over_a / (over_a - over_b));
+        if (count == 5) break;
+    }
+    float sum = 0.0f;
+    for (int i = 0; i < count; ++i) {
+        const Vec3 &a = kept[i], &b = kept[(i + 1) % count], across = glm::cross(a, b);
+        const float length = glm::length(across);
+        if (length > 0.0f) sum += std::atan2(length, glm::dot(a, b)) * glm::dot(across, n) / length;
+    }
+    return 0.5f * std::abs(sum);
+}
+
+/// Edge of the part of a texel that each position stands for, m.
+inline float cell_edge(const LightmapReceivers& receivers, uint32_t r) {
+    return receivers.texel_size[r] / std::sqrt(static_cast<float>(receivers.positions_per_texel));
+}
+
+/// Whether a lamp is so close to a texel that its irradiance varies too steeply for the texel's few positions.
+inline bool is_near_lamp(const LightmapReceivers& receivers, uint32_t r, const EmitterSample& s) {
+    return (s.point_like || s.lobe != Vec3(0.0f)) && receivers.whole[r] != 0 && receivers.cut[r] == 0 &&
+           s.distance < 3.0f * cell_edge(receivers, r) && s.distance > 0.0f;
+}
+
+/// The mean of a near lamp's light over the cell of a position p, over the value at the position; 1 for other emitters.
+/// For a point lamp it is the lamp's vector irradiance of the cell, along the shading normal, over its area; for a point
+/// of an area lamp the cell's irradiance, as light that comes from the cell would bring it there, is the same by
+/// reciprocity.
 inline float near_lamp_factor(const LightmapReceivers& receivers, uint32_t r, uint32_t position, const Vec3& p,
                               const EmitterSample& s) {
-    const float cell = receivers.texel_size[r] / std::sqrt(static_cast<float>(receivers.positions_per_texel));
-    if (!s.point_like || receivers.whole[r] == 0 || receivers.cut[r] != 0 || !(s.distance < 3.0f * cell)) return 1.0f;
+    if (!is_near_lamp(receivers, r, s)) return 1.0f;
+    const float cell = cell_edge(receivers, r), half = 0.5f * cell, cube = s.distance * s.distance * s.distance;
     const Frame frame = cell_frame(receivers, r, position);
     const Vec3 l = frame.to_local(s.target - p), n = frame.to_local(receivers.frame[r].z);
     const float along = glm::dot(l, n);
     if (!(l.z > 0.0f) || !(along > 0.0f)) return 1.0f;
-    const float half = 0.5f * cell;
-    const Vec3 sum = rectangle_vector_irradiance(-half - l.x, half - l.x, -half - l.y, half - l.y, l.z);
-    const float mean = glm::dot(sum, n) / (cell * cell);
-    return mean > 0.0f ? mean * s.distance * s.distance * s.distance / along : 1.0f;
+    const float x0 = -half - l.x, x1 = half - l.x, y0 = -half - l.y, y1 = half - l.y;
+    if (s.point_like) {
+        const float mean = glm::dot(rectangle_vector_irradiance(x0, x1, y0, y1, l.z), n) / (cell * cell);
+        return mean > 0.0f ? mean * cube / along : 1.0f;
+    }
+    const Vec3 corners[4] = {{x0, y0, -l.z}, {x1, y0, -l.z}, {x1, y1, -l.z}, {x0, y1, -l.z}};
+    const float cosine = std::max(-glm::dot(s.direction, s.lobe), 1e-6f);
+    return rectangle_irradiance(corners, frame.to_local(s.lobe)) * cube / (l.z * cell * cell) / cosine;
 }
 
 } // namespace ajar
