@@ -34,7 +34,7 @@ double flux_below(const ajar_light_desc& d, double height, uint32_t texels, uint
     double sum = 0.0;
     for (uint32_t y = 0; y < texels; ++y)
         for (uint32_t x = 0; x < texels; ++x) sum += e.at(x, y);
-    return sum * 4.0 / (double{texels} * texels);
+    return sum * 4.0 / (static_cast<double>(texels) * texels);
 }
 
 TEST(NearLight, SmallAreaLampsKeepTheirFlux) {

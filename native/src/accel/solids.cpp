@@ -75,7 +75,7 @@ struct Finder {
         for (int i = 0; i < kMaxHits; ++i) {
             const Hit hit = tracer.intersect(ray, kMaskGatherAll);
             if (hit.triangle == kMiss) return;
-            ray.tnear = next_tnear(hit.t);
+            ray.tnear = hit.t * (1.0f + 0x1p-21f);
             const uint32_t instance = scene.triangles[hit.triangle].instance;
             if (std::find(met.begin(), met.end(), instance) != met.end()) continue;
             met.push_back(instance);

@@ -428,7 +428,7 @@ bool Builder::is_open(uint32_t r, const Spots& spots) const {
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
     const Vec3 low = spots[0].origin - 0.49f * (x + y), high = spots.back().origin + 0.49f * (x + y);
     const Vec3 side = spots[0].origin + (static_cast<float>(columns) - 0.51f) * x - 0.49f * y;
-    const Spot corners[4] = {{low, {}}, {side, {}}, {high, {}}, {low + high - side, {}}};
+    const Spot corners[4] = {{low, {}, {}}, {side, {}, {}}, {high, {}, {}}, {low + high - side, {}, {}}};
     for (int k = 0; k < 4; ++k) {
         const Vec3 a = corners[k].origin, b = corners[(k + 1) % 4].origin;
         if (is_covered(r, corners[k]) || tracer.occluded({a + up, b - a, 0.0f, 1.0f}, kMaskWall)) return false;
