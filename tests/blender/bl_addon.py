@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Public names, tagging operators, checks and UV layers of the add-on."""
+import json
 import os
 import sys
 import tempfile
@@ -159,6 +160,12 @@ def check_checks():
     assert found("nothing shines", "WARNING")
     scene.world.ajar.sky_role = "BAKED"
     assert not found("nothing shines")
+    text = "looks flipped, 100 % of its surface. Flip its normals, or set Bake side to Back"
+    scene.ajar.last_bake = json.dumps({"warnings": [[cube.name, text]]})
+    assert [f.remedy for f in found("looks flipped")] == ["Flip its normals, or set Bake side to Back"]
+    cube.ajar.bake_side = "BACK"
+    assert not found("looks flipped")
+    scene.ajar.last_bake = ""
     node = cube.active_material.node_tree.nodes.new("ShaderNodeTexImage")
     node.image = bpy.data.images.new("Lost", 4, 4)
     node.image.source, node.image.filepath = "FILE", "/nowhere/lost.png"

@@ -87,6 +87,8 @@ def test_objects():
     places = {"A": place(0.5), "Mirrored": place(1), "Refined": place(1), "Unseen": place(1)}
     for name in ("Shared", "Refined", "Mirrored"):
         lightmap_layer(bpy.data.meshes[name])
+    for name in ("A", "B"):
+        bpy.data.objects[name].ajar.bake_side = "BACK"
     shot = Shot({"pages": [{"width": 64, "height": 64}], "objects": places})
     names = [i["name"] for i in shot.data["instances"]]
     assert not {"Hidden", "InSecret", "Empty mesh"} & set(names), names
@@ -94,7 +96,9 @@ def test_objects():
     assert sum("Text" in n for n in names) == 1 and sum("Sign" in n for n in names) == 1, names
     assert shot.instance("A")["mesh"] == shot.instance("B")["mesh"] == shot.instance("Unseen")["mesh"]
     assert shot.instance("A")["surface"] == "lightmap" and shot.instance("A")["lightmap_layer"] == 1
-    assert shot.instance("A")["uv_scale"] == [0.5, 0.5]
+    assert shot.instance("A")["uv_scale"] == [0.5, 0.5] and shot.instance("A")["bake_side"] == "back"
+    assert "bake_side" not in shot.instance("B"), "what stores no light has no side to choose"
+    assert "bake_side" not in shot.instance("Unseen")
     assert shot.instance("B")["surface"] == "occluder" and shot.warned("B", "no lightmap UVs")
     assert shot.instance("NoShadow")["visibility"] == ["gather"]
     assert shot.instance("Mirrored")["surface"] == "occluder" and shot.warned("Mirrored", "'Mirror'")
