@@ -30,6 +30,7 @@ double flux_below(const ajar_light_desc& d, double height, uint32_t texels, uint
     scene.commit();
     ajar_settings s = kit::settings(0);
     s.seed = seed;
+    s.positions_per_texel = 4;
     const kit::Layer e = kit::Bake(scene, s).layer(AJAR_LAYER_IRRADIANCE);
     double sum = 0.0;
     for (uint32_t y = 0; y < texels; ++y)
