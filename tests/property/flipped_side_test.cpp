@@ -85,6 +85,29 @@ TEST(FlippedSide, BackBakedIsFlipped) {
     EXPECT_EQ(p.flipped(), Names{});
 }
 
+TEST(FlippedSide, WallOverTheEdgeOfTheWorldIsNamedUnderASky) {
+    for (const bool out : {false, true}) {
+        Place p;
+        const kit::MeshData room = kit::box({-2, -2, 0}, {2, 2, 3}, true);
+        kit::MeshData rest = room, wall = room;
+        rest.corners.resize(30), rest.uv.resize(30); // all but the wall at x low
+        wall.corners.assign(room.corners.begin() + 30, room.corners.end());
+        wall.uv.assign(room.uv.begin() + 30, room.uv.end());
+        if (out) std::reverse(wall.corners.begin(), wall.corners.end());
+        p.add(rest, "room");
+        p.add(wall, "wall");
+        p.scene.sky({1, 1, 1});
+        EXPECT_EQ(p.flipped(), out ? Names{"wall"} : Names{});
+    }
+}
+
+TEST(FlippedSide, CardInTheAirIsSane) {
+    Place p;
+    p.add(picture(2.0f, false), "card");
+    p.scene.sky({1, 1, 1});
+    EXPECT_EQ(p.flipped(), Names{});
+}
+
 TEST(FlippedSide, ClosedPropWithALampInItIsSane) {
     Place p;
     p.add(kit::plane(6.0f, 0.0f), "ground");

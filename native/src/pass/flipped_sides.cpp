@@ -13,16 +13,18 @@ namespace ajar {
 
 namespace {
 
-constexpr float kMostReach = 0.5f;       ///< m
-constexpr float kReachOfWidth = 0.25f;   ///< of the surface's width
-constexpr float kBlind = 0.6f;           ///< least share of a front that looks flipped
-constexpr float kOpen = 0.5f;            ///< least share of its back that sees into the open
-constexpr float kLeastShare = 0.02f;     ///< of an object's area that is worth a warning
-constexpr size_t kMostParts = 32;        ///< of an object, the largest
-constexpr uint32_t kRaysPerPoint = 4;    ///< and side
-constexpr uint32_t kMostPoints = 16;     ///< per part
-constexpr uint64_t kRayBudget = 4000000; ///< of all parts
-constexpr size_t kNamedAlone = 8;        ///< objects with a warning of their own
+constexpr float kMostReach = 0.5f;     ///< m
+constexpr float kReachOfWidth = 0.25f; ///< of the surface's width
+// Of a front that looks flipped: an upright sheet whose front is over the edge of the world sees sky in the other half.
+constexpr float kBlind = 0.45f;
+// Of its back. Sheets above each other and cards in the air are blind on both sides, or on neither.
+constexpr float kOpen = 0.5f, kBlindBack = 0.25f;
+constexpr float kLeastShare = 0.02f,
+                kLeastArea = 0.25f;                    ///< of the object, and m^2: parts smaller than both do not count
+constexpr uint32_t kRaysPerPoint = 4;                  ///< and side
+constexpr uint32_t kMostPoints = 16, kLeastPoints = 4; ///< per part
+constexpr uint64_t kRayBudget = 4000000;               ///< of all fronts
+constexpr size_t kNamedAlone = 8;                      ///< objects with a warning of their own
 
 /// A connected part of one instance.
 struct Part {
@@ -95,7 +97,7 @@ float width_of(const Snapshot& scene, const Part& part) {
     return edges[1];
 }
 
-/// The largest parts of every lightmapped instance, and the areas (m^2) of these.
+/// Every part of lightmapped instances that is large enough, and the areas (m^2) of instances.
 std::vector<Part> collect(const Snapshot& scene, std::vector<float>& area) {
     std::vector<MeshPatches> of_mesh;
     for (const Mesh& m : scene.meshes) of_mesh.push_back(find_patches(m));
@@ -115,10 +117,8 @@ std::vector<Part> collect(const Snapshot& scene, std::vector<float>& area) {
     }
     std::vector<Part> out;
     for (std::vector<Part>& of : parts) {
-        std::erase_if(of, [](const Part& p) { return p.triangles.empty(); });
-        std::stable_sort(of.begin(), of.end(), [](const Part& a, const Part& b) { return a.area() > b.area(); });
-        of.resize(std::min(of.size(), kMostParts));
         for (Part& p : of) {
+            if (p.triangles.empty() || (p.area() < kLeastShare * area[p.instance] && p.area() < kLeastArea)) continue;
             p.reach = std::min(kMostReach, kReachOfWidth * width_of(scene, p));
             out.push_back(std::move(p));
         }
@@ -133,13 +133,16 @@ struct Finding {
 };
 
 std::string text_of(const Finding& f, float object_area) {
+    constexpr float kWhole = 0.9f; // of the surface: the object as a whole is to be turned
+    const float share = f.area / object_area;
     char text[400];
-    std::snprintf(
-        text, sizeof text,
-        "looks flipped, %.0f %% of its surface: its front faces what nobody sees (%.0f %% of it ends within "
-        "%.2g m, inside solids or in nothing), its back the open; its lightmap holds the front and stays dark. "
-        "Flip its normals (Mesh > Normals > Flip), or set Bake Side to Back",
-        100.0 * f.area / object_area, 100.0 * f.blind, f.reach);
+    std::snprintf(text, sizeof text,
+                  "looks flipped, %.0f %% of its surface: the front faces what nobody sees (%.0f %% of it ends within "
+                  "%.2g m, inside solids or in nothing), the back the open; the lightmap holds the front and stays "
+                  "dark. Flip %s",
+                  100.0 * share, 100.0 * f.blind, f.reach,
+                  share >= kWhole ? "its normals (Mesh > Normals > Flip), or set Bake side to Back"
+                                  : "the faces that show red in the Face Orientation overlay (Mesh > Normals > Flip)");
     return text;
 }
 
@@ -151,14 +154,16 @@ std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tra
     const std::vector<Part> parts = collect(scene, area);
     const Measure measure(scene, tracer);
     const uint64_t share = kRayBudget / (kRaysPerPoint * std::max<uint64_t>(parts.size(), 1));
-    const auto points = static_cast<uint32_t>(std::clamp<uint64_t>(share, 4, kMostPoints));
+    const auto points = static_cast<uint32_t>(std::clamp<uint64_t>(share, kLeastPoints, kMostPoints));
     std::vector<float> blind(parts.size(), 0.0f); ///< of parts that look flipped
     pool.for_each(
         parts.size(), progress,
         [&](size_t i) {
             const uint32_t seed = hash32(static_cast<uint32_t>(i));
             const float front = measure.look(parts[i], false, points, seed).blind;
-            if (front >= kBlind && measure.look(parts[i], true, points, seed).open >= kOpen) blind[i] = front;
+            if (front < kBlind) return;
+            const View back = measure.look(parts[i], true, points, seed);
+            if (back.open >= kOpen && back.blind <= kBlindBack) blind[i] = front;
         },
         false);
     std::vector<Finding> findings;
@@ -169,7 +174,6 @@ std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tra
         findings.back().area += parts[i].area();
         findings.back().blind += blind[i] * parts[i].area();
     }
-    std::erase_if(findings, [&](const Finding& f) { return f.area < kLeastShare * area[f.instance]; });
     std::stable_sort(findings.begin(), findings.end(),
                      [](const Finding& a, const Finding& b) { return a.area > b.area; });
     std::vector<Warning> out;
@@ -186,7 +190,7 @@ std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tra
     if (!others.empty())
         out.push_back({scene.name, std::to_string(findings.size() - kNamedAlone) +
                                        " more objects look flipped, in part or whole: " + others +
-                                       ". Flip their normals (Mesh > Normals > Flip), or set Bake Side to Back"});
+                                       ". Flip their normals (Mesh > Normals > Flip), or set Bake side to Back"});
     return out;
 }
 

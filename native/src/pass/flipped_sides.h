@@ -13,7 +13,7 @@ namespace ajar {
 /// Measured is what the hemisphere of a surface ends on, weighted by the cosine, on its front and on its back;
 /// never how bright that is. Blind is the share that ends inside a solid, on an opaque surface within reach (a
 /// quarter of the surface's width, half a metre at most), or that leaves the scene where no sky shines: nobody can
-/// stand there. A connected part of a mesh looks flipped if its front is mostly blind and its back sees into the
+/// stand there. A connected part of a mesh looks flipped if its front is half blind or more and its back sees into the
 /// open: a picture whose front is a finger's breadth from the wall, a floor that faces the ground under it, a room
 /// without a sky whose normals point out of it.
 ///
