@@ -183,8 +183,7 @@ TEST(SelfCheck, LooksAtWhatIsStored) {
     const nlohmann::json report = nlohmann::json::parse(bake.report());
     EXPECT_GT(bake.layer(AJAR_LAYER_IRRADIANCE).at(8, 8, 0), 1.5f * 65024.0f);
     EXPECT_LT(report.at("self_check").at("ratio").get<double>(), 0.9);
-    ASSERT_GE(report.at("warnings").size(), 1u);
-    EXPECT_NE(report.at("warnings")[0].at("text").get<std::string>().find("the stored light"), std::string::npos);
+    EXPECT_NE(report.at("warnings").dump().find("the stored light"), std::string::npos) << report.at("warnings");
 }
 
 TEST(SelfCheck, JudgesElementsInSixStatesAndTellsThePackage) {

@@ -30,6 +30,7 @@ struct Prepared {
     void stand_at(const DVec3& p) {
         receivers.texel.push_back(static_cast<uint32_t>(receivers.texel.size()));
         receivers.frame.push_back(Frame{});
+        receivers.texel_size.push_back(0.1f);
         receivers.positions.push_back(Vec3(p - scene.origin));
     }
     /// For all receivers as one tile.

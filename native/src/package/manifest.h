@@ -82,7 +82,7 @@ struct PackageContent {
     LightPatchPlanes light_patches = LightPatchPlanes::none;
     bool overlap_pictures = false; ///< whether pictures of what texels take are written (overlap_picture.h)
     double discarded = 0.0;        ///< share of all terms' light at texels that do not keep it
-    std::string self_check = {}; ///< JSON object as text: what brute force said of this package; or empty
+    std::string self_check = {};   ///< JSON object as text: what brute force said of this package; or empty
 };
 
 /// Dispatches of one class of terms.bin (native/runtime/terms_format.h).

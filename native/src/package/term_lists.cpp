@@ -49,16 +49,6 @@ void check_element(const PackageElement& element) {
                     element.name);
 }
 
-void check_content(const PackageContent& content) {
-    if (texel_count(content) > 0xffffffffull) throw Error(AJAR_ERROR_ARGUMENT, "The package has too many texels");
-    if (content.terms.size() > 65536) throw Error(AJAR_ERROR_ARGUMENT, "The package has too many terms");
-    for (const PackagePage& page : content.pages)
-        if (std::max(page.width, page.height) > 65536)
-            throw Error(AJAR_ERROR_ARGUMENT, "A page with terms is wider or higher than 65536 texels");
-    for (const PackageElement& element : content.elements) check_element(element);
-    for (size_t i = 0; i < content.terms.size(); ++i) check_term(content, content.terms[i], i);
-}
-
 StoredTerm make_stored(const PackageTerm& term) {
     StoredTerm s;
     s.is_signed = term.is_signed;
@@ -103,6 +93,16 @@ void fill_entries(const PackageContent& content, TermLists& lists) {
 }
 
 } // namespace
+
+void check_content(const PackageContent& content) {
+    if (texel_count(content) > 0xffffffffull) throw Error(AJAR_ERROR_ARGUMENT, "The package has too many texels");
+    if (content.terms.size() > 65536) throw Error(AJAR_ERROR_ARGUMENT, "The package has too many terms");
+    for (const PackagePage& page : content.pages)
+        if (std::max(page.width, page.height) > 65536)
+            throw Error(AJAR_ERROR_ARGUMENT, "A page with terms is wider or higher than 65536 texels");
+    for (const PackageElement& element : content.elements) check_element(element);
+    for (size_t i = 0; i < content.terms.size(); ++i) check_term(content, content.terms[i], i);
+}
 
 float storage_scale(float largest) {
     int exponent = 0;

@@ -35,6 +35,9 @@ struct TermLists {
 std::array<uint32_t, 3> entry_words(const PackageTerm& term, const StoredTerm& stored, size_t index,
                                     bool signed_layout);
 
+/// Throws Error(AJAR_ERROR_ARGUMENT) for elements, pages and terms that are malformed.
+void check_content(const PackageContent& content);
+
 /// Gathers what each texel keeps. Entries that are black once packed are left out. Throws Error(AJAR_ERROR_ARGUMENT)
 /// for terms that are malformed.
 TermLists collect_terms(const PackageContent& content);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "package/dispatch_plan.h"
+#include "package/rounded_base.h"
 #include "package/term_blocks.h"
 
 namespace ajar {
@@ -296,7 +297,9 @@ TermsFile Builder::build(std::span<const PageChecksums> checksums) {
 } // namespace
 
 TermsFile make_terms_file(const PackageContent& content, std::span<const PageChecksums> pages) {
-    return Builder(content).build(pages);
+    check_content(content);
+    const RoundedContent rounded(content);
+    return Builder(rounded.content()).build(pages);
 }
 
 } // namespace ajar
