@@ -78,6 +78,9 @@ void TermBaker::join(std::vector<FinalPart>& parts) {
     std::erase_if(out.terms, [](const Term& t) { return t.is_base(); });
     std::vector<double> kept(out.terms.size(), 0.0), dropped(out.terms.size(), 0.0);
     out.first.push_back(0);
+    size_t lights = 0;
+    for (const FinalPart& t : parts) lights += t.light.size();
+    out.light.reserve(lights); // growing would hold them twice more for a moment
     for (FinalPart& t : parts) {
         std::vector<uint32_t> number;
         for (size_t i = 0; i < t.terms.size(); ++i) {
