@@ -101,6 +101,17 @@ TEST(FlippedSide, WallOverTheEdgeOfTheWorldIsNamedUnderASky) {
     }
 }
 
+TEST(FlippedSide, UpperFloorWithoutARoofIsSane) {
+    Place p;
+    kit::MeshData walls = kit::box({-2, -2, 0}, {2, 2, 5}, true);
+    walls.corners.erase(walls.corners.begin() + 6, walls.corners.begin() + 12);
+    walls.uv.erase(walls.uv.begin() + 6, walls.uv.begin() + 12);
+    p.add(walls, "walls and lower floor");
+    p.add(kit::plane(4.0f, 3.0f), "upper floor");
+    p.scene.point_light({0, 0, 4}, 100.0f);
+    EXPECT_EQ(p.flipped(), Names{});
+}
+
 TEST(FlippedSide, CardInTheAirIsSane) {
     Place p;
     p.add(picture(2.0f, false), "card");

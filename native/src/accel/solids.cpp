@@ -10,8 +10,8 @@ namespace ajar {
 
 namespace {
 
-constexpr uint32_t kEmissivePoints = 6; ///< tried of each emissive instance
-constexpr int kMaxHits = 64;            ///< of one way; what lies behind more surfaces is not looked for
+constexpr size_t kLeastPoints = 6, kMostPoints = 256; ///< tried of each emissive instance, one per triangle between
+constexpr int kMaxHits = 64;                          ///< of one way; what lies behind more surfaces is not looked for
 /// Ways from a source, along no axis that walls are built along.
 const Vec3 kWays[] = {{0.31f, 0.17f, 0.935f}, {-0.62f, 0.53f, 0.58f}, {0.41f, -0.84f, -0.356f}};
 
@@ -59,10 +59,10 @@ struct Finder {
     }
 
     /// own: instance of the source itself, whose glow on its own backs does not make a room of it.
-    void light_from(const Vec3& p, uint32_t own) {
+    void light_from(const Vec3& p) {
         for (size_t i = 0; i < behind.size(); ++i)
-            if (i != own && inward[i] != 0 && is_apart(p, i)) shine_behind(i);
-        for (const Vec3& w : kWays) follow({p, glm::normalize(w)}, own);
+            if (inward[i] != 0 && is_apart(p, i)) shine_behind(i);
+        for (const Vec3& w : kWays) follow({p, glm::normalize(w)});
     }
 
     bool is_apart(const Vec3& p, size_t i) const {
@@ -70,7 +70,7 @@ struct Finder {
     }
 
     /// A mesh whose back comes first on the way is behind its surface here.
-    void follow(Ray ray, uint32_t own) {
+    void follow(Ray ray) {
         std::vector<uint32_t> met;
         for (int i = 0; i < kMaxHits; ++i) {
             const Hit hit = tracer.intersect(ray, kMaskGatherAll);
@@ -79,7 +79,7 @@ struct Finder {
             const uint32_t instance = scene.triangles[hit.triangle].instance;
             if (std::find(met.begin(), met.end(), instance) != met.end()) continue;
             met.push_back(instance);
-            if (hit.back && instance != own) shine_behind(instance);
+            if (hit.back) shine_behind(instance);
         }
     }
 
@@ -87,20 +87,24 @@ struct Finder {
         if (l.dark()) return;
         if (l.type == Light::Type::sun) return light_from_far();
         for (const Vec2& u : {Vec2(0.0f), Vec2(0.4f), Vec2(-0.4f)})
-            light_from(l.position + l.edge_x * u.x + l.edge_y * u.y, kNoElement);
+            light_from(l.position + l.edge_x * u.x + l.edge_y * u.y);
     }
 
     void light_from_surfaces() {
         std::vector<std::vector<uint32_t>> emissive(scene.instances.size());
         for (uint32_t t = 0; t < scene.triangles.size(); ++t)
             if (scene.materials[scene.triangles[t].material].emits) emissive[scene.triangles[t].instance].push_back(t);
-        for (uint32_t i = 0; i < emissive.size(); ++i)
-            for (uint32_t k = 0; !emissive[i].empty() && k < kEmissivePoints; ++k) {
-                const uint32_t t = emissive[i][k * emissive[i].size() / kEmissivePoints];
-                const float r = std::sqrt(unit_float(hash_combine(i, 2 * k))),
-                            v = unit_float(hash_combine(i, 2 * k + 1));
-                light_from(scene.position(t, 1.0f - r, r * v), i);
+        for (uint32_t i = 0; i < emissive.size(); ++i) {
+            if (emissive[i].empty()) continue;
+            shine_behind(i); // its backs glow
+            const size_t count = std::clamp(emissive[i].size(), kLeastPoints, kMostPoints);
+            for (size_t k = 0; k < count; ++k) {
+                const uint32_t t = emissive[i][k * emissive[i].size() / count],
+                               h = hash_combine(i, static_cast<uint32_t>(k));
+                const float r = std::sqrt(unit_float(h));
+                light_from(scene.position(t, 1.0f - r, r * unit_float(hash32(h))));
             }
+        }
     }
 };
 

@@ -15,9 +15,9 @@ enum class Behind : uint8_t {
     room   ///< closed and opaque around a source of light: a room whose normals point out of it
 };
 
-/// For each instance. It says where receivers make sense and nothing about transport: backs reflect what falls on
-/// them, which is nothing in a solid. Sources are lamps, the sky, and emissive surfaces of other instances, tried at
-/// a few points each.
+/// For each instance. No light gets into a solid, so that its backs are black: gather rays end there, which spares them
+/// ways through the dark, and light that a texel holds which a wall cuts does not spread inside. The backs of rooms
+/// reflect what falls on them. Sources are lamps, the sky, and emissive surfaces, tried at up to 256 points each.
 std::vector<Behind> find_solids(const Snapshot& scene, const Tracer& tracer);
 
 } // namespace ajar

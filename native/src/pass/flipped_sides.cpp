@@ -15,14 +15,14 @@ namespace {
 
 constexpr float kMostReach = 0.5f;     ///< m
 constexpr float kReachOfWidth = 0.25f; ///< of the surface's width
-// Of a front that looks flipped: an upright sheet whose front is over the edge of the world sees sky in the other half.
-constexpr float kBlind = 0.45f;
+// Of a front that looks flipped: half of what an upright sheet over the edge of the world sees is above the horizon.
+constexpr float kBlind = 0.4f;
 // Of its back. Sheets above each other and cards in the air are blind on both sides, or on neither.
 constexpr float kOpen = 0.5f, kBlindBack = 0.25f;
 constexpr float kLeastShare = 0.02f,
                 kLeastArea = 0.25f;                    ///< of the object, and m^2: parts smaller than both do not count
 constexpr uint32_t kRaysPerPoint = 4;                  ///< and side
-constexpr uint32_t kMostPoints = 16, kLeastPoints = 4; ///< per part
+constexpr uint32_t kMostPoints = 64, kLeastPoints = 4; ///< per part
 constexpr uint64_t kRayBudget = 4000000;               ///< of all fronts
 constexpr size_t kNamedAlone = 8;                      ///< objects with a warning of their own
 
@@ -68,8 +68,10 @@ private:
     void add(const Ray& ray, const Part& part, float weight, View& v) const {
         const Hit hit = tracer_.intersect(ray, kMaskGather); // doors are open, toggles absent
         if (hit.triangle == kMiss) {
-            const bool sky = scene_.sky.lit() && ray.direction.z > 0.0f;
-            (sky ? v.open : v.blind) += weight;
+            if (!(ray.direction.z > 0.0f))
+                v.blind += weight;
+            else if (scene_.sky.lit())
+                v.open += weight;
             return;
         }
         const Triangle& t = scene_.triangles[hit.triangle];
@@ -136,13 +138,14 @@ std::string text_of(const Finding& f, float object_area) {
     constexpr float kWhole = 0.9f; // of the surface: the object as a whole is to be turned
     const float share = f.area / object_area;
     char text[400];
-    std::snprintf(text, sizeof text,
-                  "looks flipped, %.0f %% of its surface: the front faces what nobody sees (%.0f %% of it ends within "
-                  "%.2g m, inside solids or in nothing), the back the open; the lightmap holds the front and stays "
-                  "dark. Flip %s",
-                  100.0 * share, 100.0 * f.blind, f.reach,
-                  share >= kWhole ? "its normals (Mesh > Normals > Flip), or set Bake side to Back"
-                                  : "the faces that show red in the Face Orientation overlay (Mesh > Normals > Flip)");
+    std::snprintf(
+        text, sizeof text,
+        "looks flipped, %.0f %% of its surface: the front faces what nobody sees (%.0f %% of it ends within "
+        "%.2g m, inside solids or below the scene), the back the open; the lightmap holds the front and stays "
+        "dark. Flip %s",
+        100.0 * share, 100.0 * f.blind, f.reach,
+        share >= kWhole ? "its normals (Mesh > Normals > Flip), or set Bake side to Back"
+                        : "the faces that show red in the Face Orientation overlay (Mesh > Normals > Flip)");
     return text;
 }
 

@@ -285,7 +285,7 @@ struct Gatherer {
                 const uint8_t f = g.surfaces.flags(hit.triangle);
                 Through there = through;
                 Way behind = way;
-                if (there.condition.require(g.scene.elements, p) && !is_dead(hit, f) &&
+                if (there.condition.require(g.scene.elements, p) && !is_inside(hit, f) &&
                     shine(ray, hit, f, there, from, behind) &&
                     pass_switches(ray, switches, next + 1, end, there, from, behind))
                     walk(ray, go_on(ray, end, behind), there, from, behind);
@@ -297,13 +297,12 @@ struct Gatherer {
 
     /// Light of a surface that is always there; true if some goes through it.
     bool meet_fixed(const Ray& ray, const Hit& hit, uint8_t f, Through& through, const Origin& from, Way& way) {
-        if (is_inside(hit, f) && hit.t < kNearTexels * g.receivers.texel_size[tile.first + from.local])
-            sink.add_inside(from.local);
-        return !is_dead(hit, f) && shine(ray, hit, f, through, from, way);
+        if (is_inside(hit, f)) {
+            if (hit.t < kNearTexels * g.receivers.texel_size[tile.first + from.local]) sink.add_inside(from.local);
+            return false;
+        }
+        return shine(ray, hit, f, through, from, way);
     }
-
-    /// A back that neither reflects nor glows.
-    static bool is_dead(const Hit& hit, uint8_t f) { return hit.back && (f & SurfaceTable::kOneSided) != 0; }
 
     static bool is_inside(const Hit& hit, uint8_t f) {
         return hit.back && (f & (SurfaceTable::kOneSided | SurfaceTable::kSolid)) != 0;
@@ -629,7 +628,7 @@ struct Gatherer {
     /// Light of one surface on such a path; true if some from behind gets through.
     bool path_shine(const Ray& ray, const Hit& hit, Through& through, uint32_t seed, Way& way, float cosine) {
         const uint8_t f = g.surfaces.flags(hit.triangle);
-        if (is_dead(hit, f)) return false;
+        if (is_inside(hit, f)) return false;
         const bool mapped = !hit.back && !(f & SurfaceTable::kUnmapped);
         if (mapped && !(f & (SurfaceTable::kEmits | SurfaceTable::kTransmits))) {
             if (sink.has_texels()) sink.texel(through, lit_texel(ray, hit), 1.0f);

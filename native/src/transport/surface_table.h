@@ -23,7 +23,7 @@ public:
         kUnmapped = 4, ///< no lightmap: its light is estimated at the hit
         kOneSided = 8,
         kMirrored = 16, ///< the normal is minus the cross product
-        kSolid = 32     ///< of a solid (find_solids): receivers inside are not seen
+        kSolid = 32     ///< of a solid (find_solids): its backs are black
     };
     SurfaceTable(const Snapshot& scene, const Tracer& tracer);
 
