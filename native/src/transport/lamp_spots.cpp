@@ -9,8 +9,9 @@ namespace {
 
 constexpr uint32_t kShadows = kMaskShadowOpaque | kMaskShadowTransmissive;
 constexpr uint32_t kProbes = 64; ///< rays that tell how close a lamp is to surfaces without a lightmap
-/// A lamp makes spots where the mean inverse square distance to such surfaces is this many times that to a surface
-/// at the mean distance. 1.5 m under the ceiling of a 4 x 4 x 3 m room it is 2, 0.5 m under it 7.
+/// A lamp makes spots where the mean inverse square distance to surfaces is this many times that to one at the mean
+/// distance. Under the ceiling of a 4 x 4 x 3 m room it is 1.2 at 1.5 m, 2.8 at 0.5 m, 11 at 0.2 m, 137 at 5 cm; gather
+/// rays alone have 1.3 times the noise of the first at 0.5 m.
 constexpr float kClose = 4.0f;
 
 float cone_cosine(const Light& l) { return l.type == Light::Type::spot ? std::max(l.cone_cos, 0.0f) : -1.0f; }
@@ -63,10 +64,11 @@ const LampSpots::Lamp* LampSpots::of(uint32_t emitter) const {
     return it != lamps_.end() && it->emitter == emitter ? &*it : nullptr;
 }
 
-bool LampSpots::sample(const Vec2& u, float choice, Spot& spot) const {
+bool LampSpots::sample(Vec2 u, Spot& spot) const {
     size_t i = 0;
-    while (i + 1 < lamps_.size() && lamps_[i].running <= choice) ++i;
+    while (i + 1 < lamps_.size() && lamps_[i].running <= u.x) ++i;
     const Lamp& lamp = lamps_[i];
+    u.x = std::clamp((u.x - (lamp.running - lamp.chance)) / lamp.chance, 0.0f, 0x1.fffffep-1f);
     const Ray ray{lamp.light->position, direction(lamp, u)};
     spot.hit = tracer_.intersect(ray, kShadows);
     if (spot.hit.triangle == kMiss) return false;

@@ -26,9 +26,10 @@ public:
         Vec3 normal{0.0f};    ///< unit, towards the lamp
         float density = 0.0f; ///< per m^2
     };
-    /// Draws a place: false if there is none. It is the first that a ray from the lamp meets of fixed surfaces which
+    /// Draws a place for u in [0,1)^2, of which x goes from lamp to lamp and over each from its axis outwards: false if
+    /// there is none. It is the first that a ray from the lamp meets of fixed surfaces which
     /// cast shadows.
-    bool sample(const Vec2& u, float choice, Spot& spot) const;
+    bool sample(Vec2 u, Spot& spot) const;
     /// Density with which sample() draws a place with a unit normal towards the lamp, unless something is between.
     float density(uint32_t emitter, const Vec3& position, const Vec3& normal) const;
     /// Whether nothing is between, for a place off its surface.
