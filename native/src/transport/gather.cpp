@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "transport/gather_kernel.h"
+#include "transport/unmapped_chain.h"
 
 namespace ajar {
 
