@@ -27,30 +27,6 @@ float spread(const Light& l, float tangent) {
     return l.spread_tan == 0.0f ? 1.0f : std::max(0.0f, (l.spread_tan - tangent) * l.spread_scale);
 }
 
-/// Even sample of the disk in the lamp's plane from which a point is lit, height (m) in front of it and from_center
-/// from its centre; nothing beside the lamp.
-LampPoint narrow(const Light& l, const Vec3& from_center, float height, Pcg& random) {
-    const Frame f = frame_from_normal(l.axis);
-    const Vec2 d = disk(random) * l.spread_tan;
-    const Vec3 beside = height * (d.x * f.x + d.y * f.y), at = from_center - height * l.axis + beside;
-    const Vec2 on_lamp{glm::dot(at, l.edge_x) / glm::dot(l.edge_x, l.edge_x),
-                       glm::dot(at, l.edge_y) / glm::dot(l.edge_y, l.edge_y)};
-    const bool ellipse = l.type == Light::Type::ellipse;
-    if (ellipse ? glm::length(on_lamp) > 0.5f : std::max(std::abs(on_lamp.x), std::abs(on_lamp.y)) > 0.5f) return {};
-    const Vec3 to = beside - height * l.axis;
-    const float distance = glm::length(to), cosine = height / distance;
-    // Over the disk's area: the height squared cancels with the distance's.
-    const float solid = kPi * l.spread_tan * l.spread_tan * cosine * cosine * cosine;
-    return {to / distance, distance, l.intensity * (solid * spread(l, glm::length(d)))};
-}
-
-/// Whether the lamp's edges and axis all meet at right angles.
-bool is_straight(const Light& l) {
-    const float size = std::max(glm::length(l.edge_x), glm::length(l.edge_y));
-    return std::abs(glm::dot(l.edge_x, l.edge_y)) < 1e-4f * size * size &&
-           std::abs(glm::dot(l.edge_x, l.axis)) + std::abs(glm::dot(l.edge_y, l.axis)) < 1e-4f * size;
-}
-
 /// A point lamp is a disk that faces p, of the intensity's flux.
 LampPoint ball(const Light& l, const Vec3& p, Pcg& random) {
     const Vec3 center = l.position - p;
@@ -67,20 +43,39 @@ LampPoint ball(const Light& l, const Vec3& p, Pcg& random) {
     return {to / distance, distance, l.intensity * (cone * height / (distance * distance * distance))};
 }
 
+/// Part of a lamp's plane in units of its edges, the whole lamp being -1/2 to 1/2.
+struct Part {
+    Vec2 low{-0.5f}, high{0.5f};
+};
+
+/// The part of an area lamp that a limited spread lets p see: a disk about p's foot on the lamp's plane, in its box.
+Part lit_part(const Light& l, const Vec3& p) {
+    Part out;
+    if (l.spread_tan == 0.0f) return out;
+    const float height = glm::dot(p - l.position, l.axis), reach = height * l.spread_tan;
+    const Vec3 foot = p - l.axis * height - l.position, across = glm::cross(l.edge_x, l.edge_y);
+    const float size = glm::length(across);
+    if (!(size > 0.0f)) return out;
+    const Vec3 n = across / size;
+    const Vec2 at(glm::dot(glm::cross(foot, l.edge_y), n) / size, glm::dot(glm::cross(l.edge_x, foot), n) / size);
+    const Vec2 half = Vec2(glm::length(l.edge_y), glm::length(l.edge_x)) * (reach / size);
+    return {glm::max(out.low, at - half), glm::min(out.high, at + half)};
+}
+
 LampPoint area(const Light& l, const Vec3& p, Pcg& random) {
-    const float height = glm::dot(p - l.position, l.axis), lit = height * l.spread_tan;
-    if (l.spread_tan != 0.0f && height <= 0.0f) return {};
-    if (l.spread_tan != 0.0f && kPi * lit * lit < l.area && is_straight(l))
-        return narrow(l, p - l.position, height, random);
-    Vec2 d = l.type == Light::Type::ellipse ? 0.5f * disk(random) : Vec2(random.uniform() - 0.5f);
-    if (l.type == Light::Type::rectangle) d.y = random.uniform() - 0.5f;
+    const Part part = lit_part(l, p);
+    const Vec2 size = part.high - part.low;
+    const Vec2 d = part.low + size * Vec2(random.uniform(), random.uniform());
+    if (!(size.x > 0.0f && size.y > 0.0f)) return {};
+    if (l.type == Light::Type::ellipse && glm::dot(d, d) > 0.25f) return {};
     const Vec3 to = l.position + d.x * l.edge_x + d.y * l.edge_y - p;
     const float distance = glm::length(to);
     if (!(distance > 0.0f)) return {};
     const float cosine = -glm::dot(to, l.axis) / distance;
     if (!(cosine > 0.0f)) return {};
+    const float lit = size.x * size.y * glm::length(glm::cross(l.edge_x, l.edge_y));
     const float tangent = glm::length(to / distance + cosine * l.axis) / cosine;
-    return {to / distance, distance, l.intensity * (l.area * cosine * spread(l, tangent) / (distance * distance))};
+    return {to / distance, distance, l.intensity * (lit * cosine * spread(l, tangent) / (distance * distance))};
 }
 
 LampPoint sun(const Light& l, Pcg& random) {

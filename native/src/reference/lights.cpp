@@ -35,6 +35,7 @@ Lights::Lights(const World& world, const std::vector<float>& weights) : world_(w
     double total = 0.0;
     for (uint32_t t = 0; t < s.triangles.size(); ++t) {
         const float set = weight(s.instance_of(t).light_set);
+        // What diffuse rays do not see lights no diffuse surface, by whatever way of sampling (Cycles' rule).
         if (!s.materials[s.triangles[t].material].emits || !s.is_gathered(t) || !(set > 0.0f)) continue;
         Pcg random(t, 0x7e57);
         double power = 0.0;
@@ -55,7 +56,7 @@ Lights::Lights(const World& world, const std::vector<float>& weights) : world_(w
     for (uint32_t y = 0; y < s.sky.image.height; ++y) {
         const double latitude = ((y + 0.5) / s.sky.image.height - 0.5) * kPi;
         for (uint32_t x = 0; x < s.sky.image.width; ++x)
-            sky_running_.push_back(sky += luminance(Vec3(s.sky.image.texel(x, y))) * std::cos(latitude));
+            sky_running_.push_back(sky += luminance(glm::abs(Vec3(s.sky.image.texel(x, y)))) * std::cos(latitude));
     }
     if (!(sky > 0.0)) sky_running_.clear();
 }
@@ -134,7 +135,7 @@ float Lights::triangle_density(uint32_t triangle, float distance, float facing) 
 
 Vec3 Lights::arriving(const Vertex& at, const Sample& sample, const SceneState& state) const {
     const float cosine = glm::dot(sample.direction, at.normal);
-    if (!(cosine > 0.0f) || !(glm::dot(sample.direction, at.side) > 0.0f) || !(max_component(sample.light) > 0.0f))
+    if (!(cosine > 0.0f) || !(glm::dot(sample.direction, at.side) > 0.0f) || sample.light == Vec3(0.0f))
         return Vec3(0.0f);
     // Stops short of the source's own surface.
     const Vec3 target = at.position + sample.direction * sample.distance;
