@@ -221,12 +221,12 @@ TEST(SelfCheck, JudgesElementsInSixStatesAndTellsThePackage) {
 }
 
 TEST(SelfCheck, ABakeWithNoPlaceToLookAtIsKept) {
-    // A floor under the black backs of one-sided roofs: brute force takes it for the inside of a thing.
+    // A floor inside a dark solid: nobody sees it.
     kit::Scene scene;
-    const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f}), roof = scene.emitter({0, 0, 0}, {0.5f, 0.5f, 0.5f}, true);
+    const uint32_t grey = scene.diffuse({0.5f, 0.5f, 0.5f});
     scene.instance(scene.mesh(kit::plane(2.0f, 0.0f, true)), grey, scene.page(16, 16), "floor");
-    scene.instance(scene.mesh(kit::plane(50.0f, 0.5f, true)), roof, AJAR_NONE, "roof");
-    scene.point_light({0.2f, 0.1f, 0.4f}, 10.0f, 0.05f);
+    scene.instance(scene.mesh(kit::box({-2, -2, -1}, {2, 2, 1}, false)), grey, AJAR_NONE, "solid");
+    scene.point_light({0, 0, 3}, 10.0f, 0.05f);
     scene.commit();
     ajar_settings s = kit::settings(1, 64);
     s.check_points = 64;
@@ -237,7 +237,7 @@ TEST(SelfCheck, ABakeWithNoPlaceToLookAtIsKept) {
     EXPECT_FALSE(report.at("self_check").contains("ratio"));
     ASSERT_EQ(report.at("warnings").size(), 1u);
     EXPECT_NE(report.at("warnings")[0].at("text").get<std::string>().find("not checked"), std::string::npos);
-    EXPECT_GT(bake.layer(AJAR_LAYER_IRRADIANCE).at(8, 8, 0), 0.0f);
+    EXPECT_EQ(bake.layer(AJAR_LAYER_IRRADIANCE).width, 16u);
 }
 
 TEST(SelfCheck, LightThatMovesToFinerTexelsDoesNotGrow) {

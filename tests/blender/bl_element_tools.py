@@ -233,6 +233,12 @@ def test_last_bake_says_what_it_knows():
         assert said in drawn, (said, drawn)
 
 
+def test_last_bake_says_why_it_was_not_checked():
+    why = {"self_check": {"not_checked": "the disk is full"}}
+    record.write_record(bpy.context.scene, {"preset": "draft", "seconds": 1.0, **why})
+    assert "Not checked by brute force: the disk is full" in " ".join(draw(panel("AJAR_PT_sidebar_last")))
+
+
 def test_panels_show_what_counts():
     obj, held = quad("Leaf", collection=collection("Held")), bpy.data.collections["Held"]
     assert "openness" not in draw(panel("AJAR_PT_object"), obj)

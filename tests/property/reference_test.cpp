@@ -216,6 +216,51 @@ TEST(Reference, ChoosesNoPlaceThatNobodySees) {
     }
 }
 
+TEST(Reference, ALampInsideAClosedMeshMakesARoomOfItWhicheverWayItFaces) {
+    kit::Sample light[2];
+    for (const bool inside : {false, true}) {
+        kit::Scene scene;
+        const uint32_t grey = scene.diffuse({0.6f, 0.6f, 0.6f});
+        scene.instance(scene.mesh(kit::plane(3.0f, 0.1f, true)), grey, scene.page(16, 16), "floor");
+        scene.instance(scene.mesh(kit::box({-2, -2, 0}, {2, 2, 3}, inside)), grey, AJAR_NONE, "shell");
+        scene.point_light({0.3f, 0.2f, 2.0f}, 50.0f, 0.1f);
+        scene.commit();
+        for (const auto& p : kit::trace(scene, kit::reference_settings(4, 200, 16))) light[inside].add(p.irradiance[0]);
+    }
+    const double error = std::hypot(light[0].error(), light[1].error());
+    EXPECT_NEAR(light[0].mean(), light[1].mean(), 4.0 * error); // the same places: far closer than by chance
+    EXPECT_GT(light[0].mean(), 1.0);
+}
+
+TEST(Reference, LightPassesAnyNumberOfClearPanes) {
+    kit::Scene scene;
+    scene.instance(scene.mesh(kit::plane(1.0f, 0.0f, true)), scene.diffuse({0.5f, 0.5f, 0.5f}), scene.page(8, 8));
+    ajar_closure clear;
+    ajar_closure_init(&clear);
+    clear.type = AJAR_CLOSURE_TRANSPARENT;
+    const uint32_t glass = scene.material({clear});
+    for (int i = 0; i < 300; ++i)
+        scene.instance(scene.mesh(kit::plane(400.0f, 0.1f + 0.01f * static_cast<float>(i), true)), glass, AJAR_NONE);
+    scene.sky({1, 1, 1});
+    scene.commit();
+    for (const auto& p : kit::trace(scene, kit::reference_settings(0, 50, 4)))
+        EXPECT_NEAR(p.irradiance[0], 3.14159265f, 1e-3f);
+}
+
+TEST(Reference, ReflectsAsMuchAsItsMaterialSays) {
+    // Inside a closed sphere the light of bounce k is albedo^k of the first one's: the baker cuts albedo at 0.95.
+    kit::Scene scene;
+    const float radius = 1.0f, albedo = 0.98f;
+    scene.instance(scene.mesh(kit::sphere_inside(radius, 4)), scene.emitter({1, 1, 1}, {albedo, albedo, albedo}),
+                   scene.page(64, 64));
+    scene.commit();
+    kit::Sample light;
+    for (const auto& p : kit::trace(scene, kit::reference_settings(20, 60, 16))) light.add(p.irradiance[0]);
+    double expected = 0.0;
+    for (int k = 0; k <= 20; ++k) expected += 3.14159265 * std::pow(albedo, k);
+    EXPECT_NEAR(light.mean() / expected, 1.0, 0.01 + 4.0 * light.error() / expected);
+}
+
 TEST(Reference, IsTheSameForAnyNumberOfThreadsAndDiffersBySeed) {
     kit::Scene scene;
     kit::fill_room(scene);

@@ -5,7 +5,8 @@ namespace ajar {
 
 namespace {
 
-constexpr uint32_t kSureBounces = 2; ///< reflections before paths end by chance
+constexpr uint32_t kSureBounces = 2;  ///< reflections before paths end by chance
+constexpr float kMostSurvive = 0.98f; ///< chance of going on, or paths between white surfaces would never end
 
 } // namespace
 
@@ -84,7 +85,7 @@ bool PathTracer::follow(Walk& walk, const Vec3& direction, float cosine) const {
             return false;
         }
         if (world_.is_dead(hit)) return false;
-        const SurfaceSample s = world_.scene.surface(hit.triangle, hit.u, hit.v);
+        const SurfaceSample s = world_.surface(hit);
         if (max_component(s.emission) > 0.0f) add_emission(walk, ray, hit, s.emission, cosine);
         const float back = luminance(s.reflectance), on = luminance(s.transmittance);
         if (!(back + on > 0.0f)) return false;
@@ -111,7 +112,7 @@ bool PathTracer::reflect(Walk& walk, const Hit& hit, const Vec3& reflectance) co
     if (walk.mapped + (mapped ? 0 : 1) > bounces_) return false;
     walk.through *= reflectance;
     if (++walk.length > kSureBounces) {
-        const float survives = std::min(1.0f, max_component(reflectance));
+        const float survives = std::min(kMostSurvive, max_component(reflectance));
         if (walk.random.uniform() >= survives) return false;
         walk.through /= survives;
     }

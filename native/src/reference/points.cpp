@@ -9,8 +9,9 @@ namespace ajar {
 
 namespace {
 
-constexpr int kTries = 256;      ///< rounds of draws, and draws of a place in a texel
-constexpr int kMostTries = 1024; ///< rounds where some places were found: a share of 1 % is missed once in 30000
+constexpr int kTries = 256;           ///< rounds of draws, and draws of a place in a texel
+constexpr int kMostTries = 1024;      ///< rounds where some places were found: a share of 1 % is missed once in 30000
+constexpr uint64_t kVainDraws = 4096; ///< of which none is in the open: there is no such place
 constexpr int kSideProbes = 8;
 constexpr int kEnclosureRays = 32;
 constexpr float kNearBack = 4.0f;      ///< texels: so near, the back of a thing that is not closed is its inside
@@ -40,8 +41,9 @@ bool locate(const std::array<Vec2, 3>& c, const Vec2& p, Place& out) {
 
 } // namespace
 
-PointChooser::PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state)
-    : world_(world), state_(state), whole_texels_(whole_texels) {
+PointChooser::PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state,
+                           std::function<bool(const Place&)> is_lit)
+    : world_(world), state_(state), whole_texels_(whole_texels), is_lit_(std::move(is_lit)) {
     const Snapshot& s = world.scene;
     double total = 0.0;
     for (uint32_t t = 0; t < s.triangles.size(); ++t) {
@@ -60,7 +62,9 @@ std::vector<ReferencePoint> PointChooser::choose(uint32_t count, uint64_t seed, 
     for (uint32_t i = 0; i < count; ++i) open[i] = i;
     // Each point has its own numbers, so that the first ones do not depend on how many there are.
     const auto goes_on = [&](int round) {
-        return !open.empty() && !triangles_.empty() && round < (open.size() < count ? kMostTries : kTries);
+        if (open.empty() || triangles_.empty()) return false;
+        if (open.size() < count) return round < kMostTries;
+        return round < kTries && static_cast<uint64_t>(round) * count < kVainDraws;
     };
     for (int round = 0; goes_on(round); ++round) {
         progress.check_cancel();
@@ -114,7 +118,9 @@ bool PointChooser::draw(ReferencePoint& point, Pcg& random) const {
     if (p.x < 0.0f || p.y < 0.0f || p.x >= static_cast<float>(page.width) || p.y >= static_cast<float>(page.height))
         return false;
     point.x = static_cast<uint32_t>(p.x), point.y = static_cast<uint32_t>(p.y);
-    return !is_buried(point.place) && !is_covered(point.place) && !is_enclosed(point.place);
+    if (is_covered(point.place)) return false;
+    point.in_lit_solid = is_buried(point.place) || is_enclosed(point.place);
+    return !point.in_lit_solid || is_lit_(point.place);
 }
 
 Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) const {
@@ -122,7 +128,8 @@ Place PointChooser::place_in_texel(const ReferencePoint& point, Pcg& random) con
         const Vec2 p(static_cast<float>(point.x) + random.uniform(), static_cast<float>(point.y) + random.uniform());
         for (const uint32_t t : point.neighbours) {
             Place place{t, 0.0f, 0.0f};
-            if (locate(corners(world_.scene, t), p, place) && !is_buried(place) && !is_covered(place)) return place;
+            if (!locate(corners(world_.scene, t), p, place) || is_covered(place)) continue;
+            if (point.in_lit_solid || !is_buried(place)) return place;
         }
     }
     return point.place;

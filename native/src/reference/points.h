@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+
 #include "base/progress.h"
 #include "reference/surface.h"
 
@@ -17,14 +19,17 @@ struct ReferencePoint {
     Place place;
     uint32_t page = 0, x = 0, y = 0;
     std::vector<uint32_t> neighbours; ///< triangles that share the texel, if its mean is wanted
+    bool in_lit_solid = false;        ///< all around is the inside of something, yet light is there
 };
 
-/// Draws places of lightmaps at random. Those that nobody sees, inside solids or close under something, are
+/// Draws places of lightmaps at random. Those that nobody sees, dark inside solids or close under something, are
 /// drawn again; with whole texels also those whose texel a wall parts, for it has no one answer.
 class PointChooser {
 public:
-    /// by_texel: all texels alike, else all surface alike. state: what is there when in doubt.
-    PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state);
+    /// by_texel: all texels alike, else all surface alike. state: what is there when in doubt. is_lit: whether any
+    /// light reaches a place.
+    PointChooser(const World& world, bool by_texel, bool whole_texels, const SceneState& state,
+                 std::function<bool(const Place&)> is_lit);
     /// Fewer than count where hardly any place is in the open, none where nothing is. Throws Cancelled.
     std::vector<ReferencePoint> choose(uint32_t count, uint64_t seed, const Progress& progress) const;
     /// Another place of the same texel, uniform over what its triangles cover.
@@ -52,6 +57,7 @@ private:
     const World& world_;
     SceneState state_;
     bool whole_texels_;
+    std::function<bool(const Place&)> is_lit_;
     std::vector<uint32_t> triangles_;
     std::vector<double> running_; ///< running sums of area
 };

@@ -10,7 +10,9 @@ namespace {
 
 constexpr uint32_t kCells = 8; ///< edge of the grid of first rays
 static_assert(kCells * kCells == kBatchPaths);
-constexpr size_t kChunk = 16; ///< points of one task
+constexpr size_t kChunk = 16;                      ///< points of one task
+constexpr uint32_t kLitPaths = 8;                  ///< each of them looks for every kind of source at every bounce
+constexpr uint64_t kLitStream = uint64_t{1} << 32; ///< random numbers that tell lit places from dark ones
 
 struct Sums {
     glm::dvec3 color{0.0};
@@ -71,7 +73,17 @@ ReferenceResult trace_reference(const Snapshot& scene, const Tracer& tracer, con
     const World world(scene, tracer);
     const Lights lights(world, settings.weights);
     const PathTracer paths(world, lights, settings.bounces, settings.door_bounces, settings.weights);
-    const PointChooser chooser(world, settings.by_texel, settings.whole_texels, {settings.weights});
+    const auto is_lit = [&](const Place& place) {
+        Pcg random(settings.point_seed, kLitStream + place.triangle);
+        for (uint32_t i = 0; i < kLitPaths; ++i) {
+            const SceneState state{settings.weights, random.next(), scene.presence(place.triangle)};
+            const Vec2 first(random.uniform(), random.uniform());
+            const Vertex at = front_vertex(world, place.triangle, place.u, place.v);
+            if (max_component(paths.irradiance(at, first, state, random)) > 0.0f) return true;
+        }
+        return false;
+    };
+    const PointChooser chooser(world, settings.by_texel, settings.whole_texels, {settings.weights}, is_lit);
     const std::vector<ReferencePoint> points = chooser.choose(settings.points, settings.point_seed, progress);
     const Integrator integrator{world, paths, chooser, settings};
     std::vector<Sums> sums(points.size());

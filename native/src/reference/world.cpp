@@ -2,6 +2,8 @@
 #include "reference/world.h"
 
 #include "base/hash.h"
+#include "scene/mesh_patch.h"
+#include "scene/uncut_surface.h"
 
 namespace ajar {
 
@@ -13,7 +15,23 @@ bool SceneState::is_there(const Presence& p) const {
 }
 
 World::World(const Snapshot& s, const Tracer& t)
-    : scene(s), tracer(t), behind_(find_solids(s, t)), has_switches_(s.has_switches()) {}
+    : scene(s), tracer(t), solid_(s.triangles.size()), has_switches_(s.has_switches()) {
+    std::vector<uint8_t> closed;
+    for (const Mesh& m : s.meshes) closed.push_back(find_patches(m).closed);
+    for (size_t i = 0; i < s.triangles.size(); ++i) {
+        const Material& material = s.materials[s.triangles[i].material];
+        solid_[i] = closed[s.instances[s.triangles[i].instance].mesh] != 0 && !material.transmits;
+    }
+}
+
+// Paths end by chance anyway: there is no need to cut reflectance where the baker does.
+SurfaceSample World::surface(const Hit& hit) const {
+    SurfaceSample s = sample_uncut(scene.materials[scene.triangles[hit.triangle].material], scene,
+                                   scene.mesh_point(hit.triangle, hit.u, hit.v));
+    const Presence p = scene.presence(hit.triangle);
+    if (!p.state && !scene.elements[p.element].bounces) s.reflectance = Vec3(0.0f); // a leaf that sends nothing back
+    return s;
+}
 
 Hit World::meet(const Ray& ray, const SceneState& state, const Passed& passed) const {
     const Hit fixed = passed.empty() ? tracer.intersect(ray, kMaskGather) : tracer.next(ray, kMaskGather, passed);

@@ -32,21 +32,21 @@ public:
     Hit meet(const Ray& ray, const SceneState& state, const Passed& passed) const;
     /// What is left of light along a shadow ray.
     Vec3 transmittance(const Ray& ray, const SceneState& state) const;
-    /// A back that sends nothing, of a one-sided surface.
+    /// What light meets there, of the reflectance that its material says.
+    SurfaceSample surface(const Hit& hit) const;
+    /// A back that sends nothing. Those of solids do: a lamp inside makes a room of any of them.
     bool is_dead(const Hit& hit) const { return hit.back && has_dead_back(hit.triangle); }
     bool has_dead_back(uint32_t triangle) const {
         return scene.materials[scene.triangles[triangle].material].one_sided;
     }
-    /// Seen from inside a thing: a dead back, or a back of a solid.
-    bool is_inside(const Hit& hit) const {
-        return is_dead(hit) || (hit.back && behind_[scene.triangles[hit.triangle].instance] == Behind::solid);
-    }
+    /// What may be the inside of a solid: the back of a closed mesh, or one that is not shown.
+    bool is_inside(const Hit& hit) const { return is_dead(hit) || (hit.back && solid_[hit.triangle] != 0); }
 
     const Snapshot& scene;
     const Tracer& tracer;
 
 private:
-    std::vector<Behind> behind_; ///< per instance
+    std::vector<uint8_t> solid_; ///< per triangle: of a closed mesh that lets no light through
     bool has_switches_;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/snapshot.h"
+#include "scene/uncut_surface.h"
 
 namespace ajar {
 
@@ -129,9 +130,15 @@ Vec3 principled_albedo(const Vec3& base, float metallic, float roughness, float 
 }
 
 SurfaceSample Material::sample(const Snapshot& scene, const MeshPoint& at) const {
+    SurfaceSample out = sample_uncut(*this, scene, at);
+    out.reflectance = glm::min(out.reflectance, Vec3(kMaxReflectance));
+    return out;
+}
+
+SurfaceSample sample_uncut(const Material& material, const Snapshot& scene, const MeshPoint& at) {
     SurfaceSample out;
-    for (const ajar_closure& c : closures) add_closure(scene, c, at, out);
-    out.reflectance = glm::clamp(out.reflectance, Vec3(0.0f), Vec3(kMaxReflectance));
+    for (const ajar_closure& c : material.closures) add_closure(scene, c, at, out);
+    out.reflectance = unit(out.reflectance);
     out.transmittance = unit(out.transmittance);
     if (!is_finite(out.emission)) out.emission = Vec3(0.0f);
     return out;
