@@ -67,7 +67,8 @@ TEST_F(TermSumsTest, CutLightIsBookedWithItsSample) {
     sums.end_sample(kLane, 0, Vec3(0.6f, 0.0f, 0.8f), 3.0f);
     ASSERT_EQ(sums.cuts().size(), 1u);
     EXPECT_NEAR(sums.cuts().at(kDoor), 2.0 * 3.0 * 0.8, 1e-5);
-    EXPECT_EQ(sums.kept(), sums.cuts().at(kDoor));
+    EXPECT_EQ(sums.met(), sums.cuts().at(kDoor));
+    EXPECT_EQ(sums.unswitched(), 0.0);
 }
 
 TEST_F(TermSumsTest, LightArrivesAtItsLaneAlone) {

@@ -11,7 +11,6 @@ namespace {
 
 constexpr uint64_t kStateStream = 0x57a7e5; ///< of random numbers, apart from those of points and paths
 constexpr int kRandomStates = 4;
-constexpr uint32_t kShareOfState = 4; ///< one in so many of the texels wished for
 
 } // namespace
 
@@ -34,7 +33,7 @@ std::vector<CheckedState> states_to_check(const std::vector<Element>& elements, 
 }
 
 uint32_t points_of_state(uint32_t wished, size_t states) {
-    return states <= 1 ? wished : std::max(1u, wished / kShareOfState);
+    return std::max(1u, wished / static_cast<uint32_t>(std::max<size_t>(states, 1)));
 }
 
 } // namespace ajar

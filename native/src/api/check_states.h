@@ -19,7 +19,7 @@ struct CheckedState {
 /// end in two of them, anywhere between in the others. Without elements there is the start alone.
 std::vector<CheckedState> states_to_check(const std::vector<Element>& elements, uint64_t seed);
 
-/// Texels of each state: all wished for if there is one, else a quarter of them.
+/// Texels of each state, so that all states together look at as many as are wished for.
 uint32_t points_of_state(uint32_t wished, size_t states);
 
 } // namespace ajar

@@ -60,8 +60,12 @@ bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t r
     const uint32_t order = limits_at(part).order;
     if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
     CutLight cut;
-    cut.add(gather, 1.0 / std::max(rays, 1u));
-    if (direct != nullptr) cut.add(*direct, 1.0);
+    const auto add = [&](const TermSums& sums, double scale) {
+        cut.add(sums, scale);
+        if (!sums.cuts().empty()) cut.all += sums.unswitched() * scale;
+    };
+    add(gather, 1.0 / std::max(rays, 1u));
+    if (direct != nullptr) add(*direct, 1.0);
     if (cut.share() <= kCutShare) return false;
     order_[tile_of(part)] = order + 1;
     return true;

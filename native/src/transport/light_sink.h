@@ -80,7 +80,7 @@ public:
     uint8_t flags(uint32_t texel) const { return rows_->flags[texel]; }
     void fetch(uint32_t texel) const { __builtin_prefetch(rows_->begin(texel)); }
     void light(const Through& through, uint32_t set, const Vec3& radiance) {
-        arrive(through.condition, sums_.slot_of(Term(set)), through.color * radiance);
+        arrive(through.condition, sums_.slot_of_set(set), through.color * radiance);
     }
     void texel(const Through& through, uint32_t texel, float weight) {
         const Vec3 scale = through.color * weight;
@@ -121,6 +121,7 @@ private:
     /// Light that needs states of doors and toggles: each presence, constant + linear x, multiplies it.
     void arrive_if(const Condition& condition, uint32_t slot, const Vec3& light) {
         sums_.meet(light);
+        if (condition.count() == 1 && !condition.has_assumed()) return arrive_behind(condition[0], slot, light);
         Products buffers[2];
         Products *now = &buffers[0], *next = &buffers[1];
         if (condition.has_assumed())
@@ -135,6 +136,21 @@ private:
         }
         if (const uint32_t e = condition.not_followed(); e != kNoElement) sums_.cut(e, light);
         for (uint32_t k = 0; k < now->count; ++k) sums_.arrive(now->of[k].slot, light * now->of[k].factor);
+    }
+    /// The same for one surface, which is the common case.
+    void arrive_behind(const Presence& surface, uint32_t slot, const Vec3& light) {
+        const PresenceFactors p = presence_factors(scene_.elements[surface.element], surface.state);
+        const uint32_t with = times(slot, surface.element);
+        if (with == slot) {
+            if (p.kept != 0.0f) sums_.arrive(slot, light * p.kept);
+            if (p.freed != 0.0f) sums_.arrive(slot_without(slot, surface.element), light * p.freed);
+            return;
+        }
+        if (p.constant != 0.0f) sums_.arrive(slot, light * p.constant);
+        if (with == TermSums::kCut)
+            sums_.cut(surface.element, light * p.linear);
+        else if (with != TermSums::kNone)
+            sums_.arrive(with, light * p.linear);
     }
     void multiply(const Product& product, uint32_t element, const PresenceFactors& p, const Vec3& light,
                   Products& out) {

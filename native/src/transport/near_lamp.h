@@ -57,8 +57,8 @@ inline bool is_near_lamp(const LightmapReceivers& receivers, uint32_t r, const E
 }
 
 /// The mean of a near lamp's light over the cell of a position p, over the value at the position; 1 for other emitters.
-/// For a point lamp it is the lamp's vector irradiance of the cell, along the shading normal, over its area; for a point
-/// of an area lamp the cell's irradiance, as light that comes from the cell would bring it there, is the same by
+/// For a point lamp it is the lamp's vector irradiance of the cell, along the shading normal, over its area; for a
+/// point of an area lamp the cell's irradiance, as light that comes from the cell would bring it there, is the same by
 /// reciprocity.
 inline float near_lamp_factor(const LightmapReceivers& receivers, uint32_t r, uint32_t position, const Vec3& p,
                               const EmitterSample& s) {

@@ -57,6 +57,13 @@ public:
         if (s == kNone) s = make_slot(table_[term_id]);
         return s;
     }
+    /// Slot of the term of a light set alone, or of the base for kNoElement.
+    uint32_t slot_of_set(uint32_t set) {
+        const size_t i = static_cast<uint32_t>(set + 1); // kNoElement becomes 0
+        if (i >= slot_of_set_.size()) slot_of_set_.resize(i + 1, kNone);
+        if (slot_of_set_[i] == kNone) slot_of_set_[i] = slot_of(Term(set));
+        return slot_of_set_[i];
+    }
     uint32_t slot_of(const Term& term) {
         Recent& recent = recent_[TermHash()(term) % kRecent];
         if (recent.slot == kNone || recent.term != term) recent = {term, look_up(term)};
@@ -110,9 +117,11 @@ public:
     /// Books the pending light of a sample from direction w (local), scaled to flux density facing w.
     void end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale);
 
-    /// Irradiance that cuts() are a part of: of terms without doors and toggles, and all that met some; unit as there.
-    double kept() const {
-        double sum = met_;
+    /// Irradiance that met doors or toggles, which cuts() are a part of; unit as there.
+    double met() const { return met_; }
+    /// Irradiance of terms without doors and toggles, magnitudes; unit as cuts().
+    double unswitched() const {
+        double sum = 0.0;
         for (uint32_t slot = 0; slot < slots(); ++slot) {
             if (terms_[slot].switch_count() != 0) continue;
             for (const Block* group : groups_[slot])
@@ -161,6 +170,7 @@ private:
     uint32_t make_slot(const Term& term) {
         terms_.push_back(term);
         all_on_.push_back(table_.all_on(term));
+        all_are_all_on_ = all_are_all_on_ && all_on_.back() == 1.0f;
         groups_.emplace_back();
         mark_.push_back(kNone);
         return slots() - 1;
@@ -178,8 +188,10 @@ private:
     const TermTable& table_;
     std::vector<uint32_t> slot_of_id_;
     std::unordered_map<Term, uint32_t, TermHash> slot_of_new_;
+    std::vector<uint32_t> slot_of_set_; ///< by set + 1
     std::vector<Term> terms_;
     std::vector<float> all_on_;                       ///< per slot: TermTable::all_on
+    bool all_are_all_on_ = true;                      ///< every slot's is 1
     std::vector<std::array<Block*, kGroups>> groups_; ///< per slot, the sums of eight lanes; null where it never came
     std::vector<std::unique_ptr<Block[]>> chunks_;
     uint32_t next_group_ = 0;
@@ -219,7 +231,7 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         b.sh[kLanes] += y[kLanes] * l;
         for (int c = 0; c < 3; ++c) b.irradiance[c] += facing[c] * w.z;
         b.book(sample, along);
-        total += along * all_on_[p.slot];
+        total += all_are_all_on_ ? along : along * all_on_[p.slot];
     }
     total_[lane].book(sample, total);
     pending_.clear();
