@@ -43,10 +43,19 @@ float tolerance(float v, int mantissa, float scale) {
     return std::max(std::ldexp(std::fabs(v), -mantissa - 1), scale * std::ldexp(0.5f, -14 - mantissa));
 }
 
-void expect_entry(const PackageTerm& term, size_t i, const kit::DecodedEntry& entry, float scale) {
+/// What a door or toggle alone takes from a base of light e is scaled as the base was rounded, to stored; what takes all
+/// of it takes a thousandth more.
+float scaled_as_base(float v, float e, float stored) {
+    if (!(v < 0.0f) || !(e > 0.0f)) return v;
+    return -v < e * (1.0f - 0x1p-10f) ? v * (stored / e) : std::min(v, -stored * (1.0f + 0x1p-10f));
+}
+
+void expect_entry(const PackageTerm& term, size_t i, bool takes_base, const Vec3& base, const Vec3& stored,
+                  const kit::DecodedEntry& entry, float scale) {
     EXPECT_EQ(entry.direction, term.direction[i]);
     for (int c = 0; c < 3; ++c) {
-        const float v = term.irradiance[3 * i + size_t(c)];
+        const float given = term.irradiance[3 * i + size_t(c)],
+                    v = takes_base ? scaled_as_base(given, base[c], stored[c]) : given;
         EXPECT_NEAR(entry.irradiance[c], v, tolerance(v, term.is_signed ? 10 : c == 2 ? 5 : 6, scale));
     }
 }
@@ -64,8 +73,12 @@ void expect_round_trip(const TermScene& scene, const Written& w) {
         ASSERT_EQ(r.entries.size(), list.size());
         for (size_t s = 0; s < list.size(); ++s) {
             ASSERT_EQ(r.entries[s].term, list[s].first);
-            expect_entry(scene.content.terms[list[s].first], list[s].second, r.entries[s],
-                         w.decoded.terms[list[s].first].scale);
+            const PackageTerm& term = scene.content.terms[list[s].first];
+            const bool takes_base =
+                term.elements.size() == 1 && scene.content.elements[term.elements[0]].kind != "light_set";
+            const float* e = &scene.content.pages[page].irradiance[3 * size_t{texel - first}];
+            expect_entry(term, list[s].second, takes_base, {e[0], e[1], e[2]}, unpack_r11g11b10f(r.irradiance),
+                         r.entries[s], w.decoded.terms[list[s].first].scale);
         }
     }
 }
@@ -241,7 +254,7 @@ TEST(TermsFile, AnyIntensityKeepsItsPrecision) {
 TEST(TermsFile, NegativeLightMakesATermSigned) {
     TermScene scene;
     scene.add_page(4, 4);
-    scene.add_element("toggle", "toggle");
+    scene.add_element("lamp", "light_set");
     scene.add_term({0}, {2}, {0.5f, -0.25f, 0.0f}, {pack_direction({})}, false); // not marked by its maker
     const Written w = write(scene);
     EXPECT_TRUE(w.file.summary.terms[0].is_signed);

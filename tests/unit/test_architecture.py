@@ -80,7 +80,7 @@ def test_a_folder_includes_only_folders_before_it():
     assert not back_edges
 
 
-FOLDER_TARGET = re.compile(r"^ajar_folder\((\w+) SOURCES [^)]*? LINK ([^)]*)\)", re.MULTILINE)
+FOLDER_TARGET = re.compile(r"^ajar_folder\((\w+)\s+SOURCES [^)]*?\sLINK ([^)]*)\)", re.MULTILINE)
 
 
 def linked_folders():

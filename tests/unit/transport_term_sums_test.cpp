@@ -101,6 +101,19 @@ TEST_F(TermSumsTest, ARowAndSingleLightsAddUp) {
     }
 }
 
+TEST_F(TermSumsTest, AllTogetherIsWithEverythingOpenAndPresent) {
+    elements[kDoor].kind = ElementKind::door; // starts open: its variable is 0 while it is
+    TermTable known{elements};
+    TermSums sums(known);
+    const uint32_t lamp = sums.slot_of_set(kSet), door = sums.slot_of(product(kSet, {kDoor}));
+    EXPECT_EQ(lamp, sums.slot_of(Term(kSet)));
+    EXPECT_EQ(sums.slot_of_set(kNoElement), sums.slot_of(Term()));
+    sums.arrive(lamp, Vec3(3.0f));
+    sums.arrive(door, Vec3(-2.0f));
+    sums.end_sample(kLane, 0, kUp, 1.0f);
+    EXPECT_NEAR(sums.total_squares(kLane), 9.0, 1e-4);
+}
+
 TEST_F(TermSumsTest, HarmonicsAreThoseOfTheDirection) {
     TermSums sums(table);
     const Vec3 w = glm::normalize(Vec3(0.3f, -0.4f, 0.8f));

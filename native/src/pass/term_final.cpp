@@ -37,6 +37,8 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
     out.cut.add(t.gather, per_ray);
     out.cut.add(t.direct, 1.0);
     out.cut.most_elements = limits_at(tile).order;
+    std::vector<uint8_t> unswitched;
+    for (const Term& term : t.terms) unswitched.push_back(term.switch_count() == 0);
     for (uint32_t lane = 0; lane < tile.count; ++lane) {
         const size_t r = tile.first + lane;
         const size_t before = out.light.size();
@@ -46,7 +48,7 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
         result_.total_error[r] = static_cast<float>(std::sqrt(t.total_variance(lane)));
         for (const uint32_t term : t.terms_at[lane]) {
             TermLight light{term, t.irradiance(term, lane), {}, static_cast<float>(std::sqrt(t.variance(term, lane)))};
-            if (t.terms[term].switch_count() == 0) out.cut.all += std::abs(luminance(light.irradiance));
+            if (unswitched[term] != 0) out.cut.all += std::abs(luminance(light.irradiance));
             const auto *g = t.gathered(term, lane), *d = t.sampled(term, lane);
             for (int c = 0; c < kShCount; ++c)
                 light.sh[c] = (g != nullptr ? g->sh[c] * per_ray : 0.0f) + (d != nullptr ? d->sh[c] : 0.0f);

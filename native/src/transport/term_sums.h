@@ -160,6 +160,13 @@ private:
     };
     static constexpr size_t kRecent = 1024;
 
+    /// Luminance of what one sample brings while everything is open, present and lit.
+    float pending_all_on() const {
+        float sum = 0.0f;
+        for (const Pending& p : pending_)
+            if (const float l = luminance(p.light); std::isfinite(l)) sum += l * all_on_[p.slot];
+        return sum;
+    }
     uint32_t look_up(const Term& term) {
         const uint32_t id = table_.find(term);
         if (id != TermTable::kUnknown) return slot_of(id);
@@ -231,9 +238,9 @@ inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, 
         b.sh[kLanes] += y[kLanes] * l;
         for (int c = 0; c < 3; ++c) b.irradiance[c] += facing[c] * w.z;
         b.book(sample, along);
-        total += all_are_all_on_ ? along : along * all_on_[p.slot];
+        total += along;
     }
-    total_[lane].book(sample, total);
+    total_[lane].book(sample, all_are_all_on_ ? total : pending_all_on() * scale * w.z);
     pending_.clear();
 }
 
