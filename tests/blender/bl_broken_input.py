@@ -95,6 +95,8 @@ def build():
     add_floors("Untextured", 1, material=plain_material("Lost Paint", missing_image()))
     add_floors("Mirrored", 2).scale = (-1, 1, 1)
     add_floors("Turned Over", 3).scale = (1, 1, -1)
+    add_floors("Turned Back", 9).scale = (1, 1, -1)
+    bpy.data.objects["Turned Back"].ajar.bake_side = "BACK"
     add_lightmap(add_floors("Stacked", 4, 2), lambda k: SQUARE)
     add_folded("Folded", 5)
     add_floors("Empty", 7).data.clear_geometry()
@@ -146,18 +148,20 @@ def check_warnings(report):
 def check_light(package):
     """Every square that is sound has the light of the sun; so have both of overlapping ones.
 
-    Scaled by -1 along z, a square stays where it was with its front below; its light lies on the side that
-    the sun lights.
+    Scaled by -1 along z, a square stays where it was with its front below, in the dark as in Cycles; its back is
+    the side that the sun lights.
     """
     with open(os.path.join(package, "manifest.json"), encoding="utf-8") as file:
         manifest = json.load(file)
     names = {i["name"] for i in manifest["instances"]}
-    assert names == {"Sound", "Untextured", "Mirrored", "Turned Over", "Stacked", "Folded", "Torn"}, names
+    turned = {"Turned Over", "Turned Back"}
+    assert names == turned | {"Sound", "Untextured", "Mirrored", "Stacked", "Folded", "Torn"}, names
+    assert irradiance_at(package, manifest, "Turned Over", 0) == (0.0, 1.0)
     for name, polygon in (
         ("Sound", 0),
         ("Untextured", 0),
         ("Mirrored", 0),
-        ("Turned Over", 0),
+        ("Turned Back", 0),
         ("Stacked", 0),
         ("Stacked", 1),
         ("Folded", 0),
