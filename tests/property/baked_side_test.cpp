@@ -175,6 +175,20 @@ TEST(BakedSide, RoomWithOutwardNormalsBouncesAsTheSameRoomInward) {
         EXPECT_NEAR(light_in_box(false, 0.0f, mapped) / inward, 1.0, 0.02) << mapped;
 }
 
+TEST(BakedSide, SoItDoesWhereABallGlowsInIt) {
+    const auto floor = [](bool inward) {
+        kit::Scene scene;
+        const uint32_t grey = scene.diffuse({0.6f, 0.6f, 0.6f});
+        scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), grey, scene.page(16, 16), "floor");
+        scene.instance(scene.mesh(kit::box({-1.5f, -1.5f, -0.01f}, {1.5f, 1.5f, 2}, inward)), grey, AJAR_NONE, "room");
+        scene.instance(scene.mesh(kit::box({-0.1f, -0.1f, 0.9f}, {0.1f, 0.1f, 1.1f}, false)),
+                       scene.emitter({10, 10, 10}), AJAR_NONE, "ball");
+        scene.commit();
+        return valid_mean(kit::Bake(scene, kit::settings(3, 1024)));
+    };
+    EXPECT_NEAR(floor(false) / floor(true), 1.0, 0.01);
+}
+
 TEST(BakedSide, GroundBesideARoomSeesItsOutsideLitByTheSky) {
     const auto ground = [](bool inward) {
         kit::Scene scene;

@@ -75,7 +75,7 @@ struct Finder {
         for (int i = 0; i < kMaxHits; ++i) {
             const Hit hit = tracer.intersect(ray, kMaskGatherAll);
             if (hit.triangle == kMiss) return;
-            ray.tnear = hit.t * (1.0f + 0x1p-21f);
+            ray.tnear = hit.t * (1.0f + 0x1p-21f) + 1e-20f; // past the hit, also one at the start itself
             const uint32_t instance = scene.triangles[hit.triangle].instance;
             if (std::find(met.begin(), met.end(), instance) != met.end()) continue;
             met.push_back(instance);
