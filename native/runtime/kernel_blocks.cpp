@@ -37,8 +37,8 @@ void read_part(const uint32_t* payload, uint32_t plane, uint32_t mask, const Ter
 
 /// Adds the slots of a block whose terms are on.
 template <uint32_t Words>
-void add_block(const terms::Dispatch& d, const uint32_t* data, const terms::BlockStart* start,
-               const uint16_t* palette, const TermWeight* weights, Lanes& lanes) {
+void add_block(const terms::Dispatch& d, const uint32_t* data, const terms::BlockStart* start, const uint16_t* palette,
+               const TermWeight* weights, Lanes& lanes) {
     const uint32_t* payload = data + d.payload + start[0].entry;
     Entries entries;
     for (uint32_t slot = start[0].slot; slot < start[1].slot; ++slot) {

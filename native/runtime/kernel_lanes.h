@@ -66,7 +66,7 @@ void add(const Entries& e, Lanes& lanes) {
 
 /// Writes the lanes that some term reached packed, the others as their base.
 inline void store(const Lanes& lanes, const uint32_t* irradiance, const uint32_t* direction, const uint32_t* address,
-           uint32_t count, const Target& target) {
+                  uint32_t count, const Target& target) {
     PackedTexel packed[kLanes];
     for (uint32_t i = 0; i < kLanes; ++i) packed[i] = pack_texel(lanes.get(i));
     for (uint32_t i = 0; i < count; ++i) {

@@ -325,7 +325,8 @@ TEST_F(PackageWriter, OverlapPicturesShowTermsAndBytesOfEachTexel) {
     }
     scene.content.overlap_pictures = true;
     write_package(scene.content, root_ / "package");
-    const nlohmann::json page = manifest(root_ / "package")["pages"][0], terms = manifest(root_ / "package")["terms_file"];
+    const nlohmann::json page = manifest(root_ / "package")["pages"][0],
+                         terms = manifest(root_ / "package")["terms_file"];
     EXPECT_EQ(terms["overlap"]["max"], 64);
     EXPECT_EQ(terms["overlap"]["histogram"][0]["texels"], 1);
     EXPECT_EQ(terms["overlap"]["histogram"][6]["texels"], 1);

@@ -43,8 +43,8 @@ float tolerance(float v, int mantissa, float scale) {
     return std::max(std::ldexp(std::fabs(v), -mantissa - 1), scale * std::ldexp(0.5f, -14 - mantissa));
 }
 
-/// What a door or toggle alone takes from a base of light e is scaled as the base was rounded, to stored; what takes all
-/// of it takes a thousandth more.
+/// What a door or toggle alone takes from a base of light e is scaled as the base was rounded, to stored; what takes
+/// all of it takes a thousandth more.
 float scaled_as_base(float v, float e, float stored) {
     if (!(v < 0.0f) || !(e > 0.0f)) return v;
     return -v < e * (1.0f - 0x1p-10f) ? v * (stored / e) : std::min(v, -stored * (1.0f + 0x1p-10f));

@@ -142,8 +142,8 @@ AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_size(ajar_runtime runtime
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_dirty(ajar_runtime runtime, uint32_t page,
                                                              ajar_runtime_rect* out_rect);
 /* The page's texels, width * height words each, top row first, without gaps: R11G11B10F irradiance
- * (in units of ajar_runtime_page_scale) and RGBA8 direction and ratio, as in the page's DDS files. Valid until release; updates write to
- * them. */
+ * (in units of ajar_runtime_page_scale) and RGBA8 direction and ratio, as in the page's DDS files. Valid until release;
+ * updates write to them. */
 AJAR_RUNTIME_API ajar_runtime_result ajar_runtime_page_texels(ajar_runtime runtime, uint32_t page,
                                                               const uint32_t** out_irradiance,
                                                               const uint32_t** out_direction);

@@ -15,8 +15,8 @@ struct CutLight {
     std::map<uint32_t, double> of_element; ///< that does not follow an element
     uint32_t most_elements = 0;            ///< of a term, anywhere
 
-    /// What was cut, and what met doors or toggles; the rest of the light is to be added to all. scale: from the unit of
-    /// sums to irradiance.
+    /// What was cut, and what met doors or toggles; the rest of the light is to be added to all. scale: from the unit
+    /// of sums to irradiance.
     void add(const TermSums& sums, double scale) {
         all += sums.met() * scale;
         for (const auto& [element, light] : sums.cuts()) of_element[element] += light * scale;
