@@ -172,6 +172,22 @@ def _last_layout(scene):
             yield warning(culprit, text + " (last bake)", "Turn off Keep Lightmap UVs and bake again")
 
 
+def flipped_objects(scene):
+    """Mesh objects that the last bake found to look flipped, each with whether it does as a whole. What was set to
+    Back since then is left out."""
+    found = {}
+    for culprit, text in record.read_record(scene).get("warnings", []):
+        problem, mark, remedy = text.partition(". Flip ")
+        if not mark or "flipped" not in problem:
+            continue
+        grouped = problem.partition(" more objects look flipped, in part or whole: ")[2]
+        for name in grouped.split(", ") if grouped else [culprit]:
+            obj = scene.objects.get(name)
+            if obj is not None and obj.type == "MESH" and obj.ajar.bake_side == "FRONT":
+                found[obj] = not grouped and remedy.startswith("its normals")
+    return found
+
+
 def _last_sides(scene):
     """Objects that the last bake found to look flipped. What was set to Back since then is left out."""
     for culprit, text in record.read_record(scene).get("warnings", []):

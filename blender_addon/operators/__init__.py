@@ -2,12 +2,13 @@
 """Operators, one file per concept."""
 import bpy
 
-from . import accuracy, bake, check, light_sets, movables, predict, preview, uvs
+from . import accuracy, bake, check, flipped, light_sets, movables, predict, preview, uvs
 
 CLASSES = (
     *accuracy.CLASSES,
     *bake.CLASSES,
     *check.CLASSES,
+    *flipped.CLASSES,
     *light_sets.CLASSES,
     *movables.CLASSES,
     *predict.CLASSES,

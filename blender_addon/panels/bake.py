@@ -2,7 +2,7 @@
 """Panels of the bake: settings, progress and the last report."""
 from bpy.types import Panel
 
-from .. import job
+from .. import checks, job
 from ..apply import record
 from .common import Properties, Sidebar, draw_text
 
@@ -135,6 +135,12 @@ class AJAR_PT_sidebar_last(Sidebar, Panel):
     def draw(self, context):
         """Draws the panel."""
         draw_last_bake(self.layout, context)
+        if checks.flipped_objects(context.scene):
+            row = self.layout.row(align=True)
+            row.label(text="Look flipped:")
+            row.operator("ajar.flipped", text="Select").action = "SELECT"
+            row.operator("ajar.flipped", text="Bake Back").action = "BACK"
+            row.operator("ajar.flipped", text="Flip").action = "FLIP"
         if context.scene.ajar.last_bake and context.scene.ajar.overlap_pictures:
             row = self.layout.row(align=True)
             row.operator("ajar.show_overlap", text="Show Overlap", icon="IMAGE_DATA").what = "overlap"

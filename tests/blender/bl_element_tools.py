@@ -239,6 +239,28 @@ def test_last_bake_says_why_it_was_not_checked():
     assert "Not checked by brute force: the disk is full" in " ".join(draw(panel("AJAR_PT_sidebar_last")))
 
 
+def test_what_looks_flipped_is_selected_baked_behind_or_flipped():
+    rug, wall, shelf, fine = quad("Rug"), quad("Wall"), quad("Shelf"), quad("Fine")
+    whole = "looks flipped, 100 % of its surface: dark. Flip its normals (Mesh > Normals > Flip), or set Bake side to Back"
+    part = "looks flipped, 40 % of its surface: dark. Flip the faces that show red"
+    more = "1 more objects look flipped, in part or whole: Shelf. Flip their normals"
+    record.write_record(
+        bpy.context.scene,
+        {"preset": "draft", "seconds": 1.0, "warnings": [["Rug", whole], ["Wall", part], ["Scene", more]]},
+    )
+    assert checks.flipped_objects(bpy.context.scene) == {rug: True, wall: False, shelf: False}
+    assert "ajar.flipped" in draw(panel("AJAR_PT_sidebar_last"))
+    bpy.ops.ajar.flipped(action="SELECT")
+    assert [obj.select_get() for obj in (rug, wall, shelf, fine)] == [True, True, True, False]
+    before = [tuple(obj.data.polygons[0].normal) for obj in (rug, wall)]
+    bpy.ops.ajar.flipped(action="FLIP")
+    after = [tuple(obj.data.polygons[0].normal) for obj in (rug, wall)]
+    assert after[0] == tuple(-c for c in before[0]) and after[1] == before[1], (before, after)
+    bpy.ops.ajar.flipped(action="BACK")
+    assert (rug.ajar.bake_side, wall.ajar.bake_side) == ("BACK", "FRONT")
+    assert rug not in checks.flipped_objects(bpy.context.scene)
+
+
 def test_panels_show_what_counts():
     obj, held = quad("Leaf", collection=collection("Held")), bpy.data.collections["Held"]
     assert "openness" not in draw(panel("AJAR_PT_object"), obj)
