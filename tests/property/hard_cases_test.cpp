@@ -246,6 +246,24 @@ TEST(HardUv, AChartInsideOneTexelIsLit) {
 
 // ---- lights ----------------------------------------------------------------------------------
 
+TEST(HardLight, WhatSumsCannotHoldIsRefusedByNameAndTheRestIsRight) {
+    for (const float watts : {1e34f, 3e37f}) {
+        kit::Scene scene;
+        scene.instance(scene.mesh(kit::plane(2.0f, 0.0f)), scene.diffuse({0, 0, 0}), scene.page(8, 8));
+        ajar_light_desc d = lamp(AJAR_LIGHT_SUN, "star");
+        d.energy = watts;
+        uint32_t id;
+        const ajar_result result = ajar_scene_add_light(scene.handle(), &d, &id);
+        if (watts > 1e34f) {
+            EXPECT_EQ(result, AJAR_ERROR_INPUT);
+            EXPECT_STREQ(ajar_error_culprit(), "star");
+            continue;
+        }
+        scene.commit();
+        EXPECT_NEAR(kit::Bake(scene, kit::settings(0, 4096)).layer(AJAR_LAYER_IRRADIANCE).at(4, 4) / watts, 1.0f, 1e-3);
+    }
+}
+
 TEST(HardLight, ValuesThatAreNotFiniteAreRefusedByName) {
     kit::Scene scene;
     float ajar_light_desc::*const fields[] = {&ajar_light_desc::energy,     &ajar_light_desc::radius,

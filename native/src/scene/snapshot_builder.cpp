@@ -77,6 +77,9 @@ bool closure_transmits(const ajar_closure& c) {
     return c.type == AJAR_CLOSURE_TRANSPARENT && has_weight(c) && may_be_positive(c.color);
 }
 
+/// W, W/m^2 or W/(m^2 sr), of lamps and skies: some ten thousand samples of it add up within a float. A sun of 3e37 was
+/// dark: its sums were infinite and left out.
+constexpr float kMostStrength = 1e34f;
 constexpr const char* kNegative = "gives negative light, which counts as 0: a package stores no light below 0";
 
 /// World bounds of an instance.
@@ -280,6 +283,8 @@ uint32_t SnapshotBuilder::add_light(const ajar_light_desc& d) {
                 "has a value that is not finite; set its power, colour and size again", name);
     check_element(d.light_set, true, name);
     const Vec3 strength = Vec3(d.color[0], d.color[1], d.color[2]) * d.energy;
+    require(max_component(glm::abs(strength)) <= kMostStrength, AJAR_ERROR_INPUT,
+            "its power is beyond what sums of samples can hold (1e34); lower it", name);
     if (is_negative(&strength.x)) warn(name, kNegative);
     snapshot_->lights.push_back(make_light(d, name, affine_of(d.transform, name)));
     snapshot_->lights.back().light_set = d.light_set;
@@ -303,6 +308,8 @@ void SnapshotBuilder::set_sky(const ajar_sky_desc& d) {
     sky.color = glm::max(Vec3(d.color[0], d.color[1], d.color[2]), Vec3(0.0f));
     require(is_finite(sky.color), AJAR_ERROR_INPUT, "sky colour is not finite; set its colour and strength again",
             "world");
+    require(max_component(sky.color) <= kMostStrength, AJAR_ERROR_INPUT,
+            "its strength is beyond what sums of samples can hold (1e34); lower it", "world");
     if (sky.present && is_negative(d.color)) warn("world", kNegative);
     if (d.type == AJAR_SKY_EQUIRECT) {
         require(d.texture < snapshot_->textures.size(), AJAR_ERROR_ARGUMENT, "sky names a texture that was not added",
