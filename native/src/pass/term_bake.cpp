@@ -16,6 +16,16 @@ constexpr double kCutShare = 0.02;
 /// rays average later, and in the final gather.
 constexpr float kBouncePrune = 16.0f, kFinalPrune = 4.0f;
 
+/// Those shares hold for a preview. Where more rays are asked for they fall as the rays rise, so that rays lower the
+/// noise of pruning as they lower their own: rays go as the noise target's inverse square.
+float fineness(const ajar_settings& settings) {
+    constexpr float kPreviewNoise = 0.05f, kPreviewRays = 256.0f;
+    if (settings.noise_target <= 0.0f)
+        return std::min(1.0f, kPreviewRays / static_cast<float>(std::max(settings.samples, 1u)));
+    const float ratio = std::min(1.0f, settings.noise_target / kPreviewNoise);
+    return ratio * ratio;
+}
+
 uint32_t order_of(uint32_t combinations) {
     return combinations == AJAR_COMBINATIONS_NONE ? 1 : combinations == AJAR_COMBINATIONS_AUTO ? kAutoOrder : kAllOrder;
 }
@@ -117,7 +127,7 @@ void TermBaker::take(std::vector<TileRows>& tiles) {
     if (direct_.first.size() == 1) direct_ = current_;
     find_thresholds();
     if (settings_.term_threshold > 0.0f)
-        current_ = prune(current_, kBouncePrune,
+        current_ = prune(current_, kBouncePrune * fineness(settings_),
                          hash_combine(settings_.seed, static_cast<uint32_t>(result_.bounce_means.size())));
 }
 
@@ -280,9 +290,9 @@ void TermBaker::find_source() {
     direct_source();
     if (first_ == nullptr) progress_.begin_stage(AJAR_STAGE_BOUNCES, 0.25f);
     run_bounces(settings_.bounces, settings_, progress_, result_.trial, [&](uint32_t b) { bounce(b); });
-    radiance_ =
-        rows_.radiance_rows(settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune, settings_.seed) : source_,
-                            s_.scene.texel_count());
+    radiance_ = rows_.radiance_rows(
+        settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune * fineness(settings_), settings_.seed) : source_,
+        s_.scene.texel_count());
     final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
     source_end_ = progress_.elapsed();
 }
