@@ -22,6 +22,7 @@ struct Stack {
 /// Mean over the floor of each term, by the elements of it; shelves are elements 0 to n, the set is n.
 struct Polynomial {
     std::vector<std::pair<std::vector<uint32_t>, double>> terms;
+    std::string report;
 
     double at(const std::vector<float>& weights) const {
         double sum = 0.0;
@@ -53,6 +54,7 @@ Polynomial bake(const Stack& stack) {
     s.term_threshold = 0.0f;
     const kit::Bake job(scene, s);
     Polynomial out;
+    out.report = job.report();
     const std::vector<ajar_term_info> terms = job.terms();
     for (uint32_t t = 0; t < terms.size(); ++t) {
         const kit::Layer l = job.term(t, kSize, kSize, page);
@@ -128,6 +130,15 @@ TEST(StackedToggles, OneChangeFromTheStartIsExactForTheNearestOfAnyNumber) {
                 state[i] = 1.0f - state[i];
                 ASSERT_NEAR(share(stack, light, state), truth(state), 4e-3) << count << " of pattern " << starts;
             }
+        }
+}
+
+TEST(StackedToggles, WhatIsCutIsNamed) {
+    for (const bool in_set : {false, true})
+        for (const size_t count : {7u, 9u}) {
+            const std::string report = bake({pattern(count, "1"), in_set}).report;
+            const bool named = report.find("stays as it is at the start") != std::string::npos;
+            EXPECT_EQ(named, count > 7) << count << (in_set ? " in a set" : "");
         }
 }
 

@@ -40,8 +40,12 @@ TEST(Presence, BeyondItsRoomAConditionIsThatOfTheStart) {
     EXPECT_TRUE(c.require(elements, {half, true}));
     EXPECT_EQ(c.at_start(), 0.25f);
     EXPECT_EQ(c.not_followed(), half);
-    EXPECT_FALSE(Condition(full).require(elements, {away, true}));
-    EXPECT_FALSE(Condition(full).require(elements, {there, false}));
+    for (const Presence& p : {Presence{away, true}, Presence{there, false}}) {
+        Condition none = full;
+        EXPECT_TRUE(none.require(elements, p)) << "its light is counted as cut";
+        EXPECT_EQ(none.at_start(), 0.0f);
+        EXPECT_EQ(none.not_followed(), p.element);
+    }
     EXPECT_FALSE(c.require(elements, {0, true})) << "known elements still contradict";
 }
 

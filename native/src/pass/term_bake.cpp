@@ -42,6 +42,7 @@ TermBaker::TermBaker(const GatherScene& scene, const ajar_settings& settings, Th
       has_primary_(
           std::any_of(scene.scene.lights.begin(), scene.scene.lights.end(), [](const Light& l) { return l.primary; })),
       order_(s_.receivers.tiles.size(), order_of(settings.combinations)),
+      source_cut_(s_.receivers.tiles.size()),
       table_(scene.scene.elements),
       bookkeeping_(bookkeeping_effect(scene.scene.elements)),
       rows_(pool, progress, s_.receivers),
@@ -68,15 +69,16 @@ TermLimits TermBaker::limits_at(const Tile& part) const { return {guide().order_
 /// Lets terms at a tile have one element more if too much light was cut; whether they may. rays: of gather.
 bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t rays, const TermSums* direct) {
     const uint32_t order = limits_at(part).order;
-    if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
     CutLight cut;
     const auto add = [&](const TermSums& sums, double scale) {
         cut.add(sums, scale);
-        if (!sums.cuts().empty()) cut.all += sums.unswitched() * scale;
+        if (direct != nullptr || !sums.cuts().empty()) cut.all += sums.unswitched() * scale;
     };
     add(gather, 1.0 / std::max(rays, 1u));
     if (direct != nullptr) add(*direct, 1.0);
+    if (direct != nullptr && first_ == nullptr) source_cut_[tile_of(part)] = cut;
     if (cut.share() <= kCutShare) return false;
+    if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
     order_[tile_of(part)] = order + 1;
     return true;
 }

@@ -98,8 +98,9 @@ private:
     /// noise; null: this is the first.
     const TermBaker* first_ = nullptr;
     uint32_t source_samples_ = kSourceSamples;
-    double source_end_ = 0.0;     ///< s, when find_source() was done
-    std::vector<uint32_t> order_; ///< [tiles] most elements of a term there
+    double source_end_ = 0.0;          ///< s, when find_source() was done
+    std::vector<uint32_t> order_;      ///< [tiles] most elements of a term there
+    std::vector<CutLight> source_cut_; ///< [tiles] in the first pass
     BakeResult result_;
     TermTable table_;
     std::vector<uint32_t> all_sets_;

@@ -179,6 +179,11 @@ void TermBaker::final_gather(std::vector<TilePlan>& plan) {
     std::vector<FinalPart> parts;
     for (auto& tile : tiles) std::move(tile.begin(), tile.end(), std::back_inserter(parts));
     join(parts);
+    // A set all of whose light on a tile is cut has no samples there in the final gather.
+    CutLight source;
+    for (const CutLight& c : source_cut_) source.add(c);
+    source.most_elements = result_.terms.cut.most_elements;
+    if (source.share() > result_.terms.cut.share()) result_.terms.cut = std::move(source);
 }
 
 TermBaker::Estimate TermBaker::answer(size_t i, const TilePlan& plan, uint32_t seed) const {

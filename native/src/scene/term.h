@@ -110,7 +110,7 @@ public:
         if (count_ == kCapacity) {
             at_start_ *= presence_factors(elements[p.element], p.state).constant;
             not_followed_ = p.element;
-            return at_start_ > 0.0f;
+            return true; // followed to its end even where it brings nothing at the start: what is cut is counted
         }
         element_[count_] = static_cast<uint16_t>(p.element);
         state_[count_++] = p.state;
