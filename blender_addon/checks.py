@@ -172,14 +172,19 @@ def _last_layout(scene):
             yield warning(culprit, text + " (last bake)", "Turn off Keep Lightmap UVs and bake again")
 
 
+def _flipped_findings(scene):
+    """(culprit, problem, remedy) of what the last bake found to look flipped."""
+    for culprit, text in record.read_record(scene).get("warnings", []):
+        problem, mark, remedy = text.partition(". Flip ")
+        if mark and "flipped" in problem:
+            yield culprit, problem, remedy
+
+
 def flipped_objects(scene):
     """Mesh objects that the last bake found to look flipped, each with whether it does as a whole. What was set to
     Back since then is left out."""
     found = {}
-    for culprit, text in record.read_record(scene).get("warnings", []):
-        problem, mark, remedy = text.partition(". Flip ")
-        if not mark or "flipped" not in problem:
-            continue
+    for culprit, problem, remedy in _flipped_findings(scene):
         grouped = problem.partition(" more objects look flipped, in part or whole: ")[2]
         for name in grouped.split(", ") if grouped else [culprit]:
             obj = scene.objects.get(name)
@@ -190,10 +195,7 @@ def flipped_objects(scene):
 
 def _last_sides(scene):
     """Objects that the last bake found to look flipped. What was set to Back since then is left out."""
-    for culprit, text in record.read_record(scene).get("warnings", []):
-        problem, mark, remedy = text.partition(". Flip ")
-        if "flipped" not in problem or not mark:
-            continue
+    for culprit, problem, remedy in _flipped_findings(scene):
         obj = scene.objects.get(culprit)
         if obj is None or obj.ajar.bake_side == "FRONT":
             yield warning(culprit, problem + " (last bake)", "Flip " + remedy)

@@ -21,7 +21,7 @@ BenchScene::BenchScene(std::string name, std::shared_ptr<const Snapshot> snapsho
       tracer_(*snapshot_),
       coverage_(rasterize(*snapshot_, pool_, progress_)),
       receivers_(receivers_of(*snapshot_, tracer_, coverage_, pool_, progress_)),
-      surfaces_(*snapshot_, tracer_),
+      surfaces_(*snapshot_, find_solids(*snapshot_, tracer_)),
       emitters_(*snapshot_, pool_, progress_),
       radiance_(snapshot_->texel_count(), Vec4(0.0f)) {
     for (uint32_t r = 0; r < receivers_.count(); ++r)

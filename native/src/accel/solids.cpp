@@ -58,7 +58,6 @@ struct Finder {
             if (inward[i] != 0) shine_behind(i);
     }
 
-    /// own: instance of the source itself, whose glow on its own backs does not make a room of it.
     void light_from(const Vec3& p) {
         for (size_t i = 0; i < behind.size(); ++i)
             if (inward[i] != 0 && is_apart(p, i)) shine_behind(i);

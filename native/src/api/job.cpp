@@ -70,8 +70,10 @@ void Job::bake(Progress& progress) {
     if (output_.receivers.count() == 0)
         throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
                     scene.name);
-    for (Warning& w : find_flipped_sides(scene, tracer, pool, progress)) output_.warnings.push_back(std::move(w));
-    const SurfaceTable surfaces(scene, tracer);
+    const std::vector<Behind> behind = find_solids(scene, tracer);
+    for (Warning& w : find_flipped_sides(scene, tracer, behind, pool, progress))
+        output_.warnings.push_back(std::move(w));
+    const SurfaceTable surfaces(scene, behind);
     const EmitterSet emitters(scene, pool, progress);
     output_.emissive_triangles = emitters.emissive_triangles();
     output_.sky_sampled = emitters.sky_emitter() != EmitterSet::kNone;

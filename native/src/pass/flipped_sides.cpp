@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "accel/solids.h"
 #include "base/owen_sobol.h"
 #include "sampling/warp.h"
 #include "scene/mesh_patch.h"
@@ -43,8 +42,8 @@ struct View {
 
 class Measure {
 public:
-    Measure(const Snapshot& scene, const Tracer& tracer)
-        : scene_(scene), tracer_(tracer), behind_(find_solids(scene, tracer)) {}
+    Measure(const Snapshot& scene, const Tracer& tracer, const std::vector<Behind>& behind)
+        : scene_(scene), tracer_(tracer), behind_(behind) {}
 
     View look(const Part& part, bool back, uint32_t points, uint32_t seed) const {
         View v;
@@ -85,7 +84,7 @@ private:
 
     const Snapshot& scene_;
     const Tracer& tracer_;
-    std::vector<Behind> behind_;
+    const std::vector<Behind>& behind_;
 };
 
 /// The second longest edge of the box around a part: its width, if it is a sheet.
@@ -151,11 +150,11 @@ std::string text_of(const Finding& f, float object_area) {
 
 } // namespace
 
-std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tracer, ThreadPool& pool,
-                                        Progress& progress) {
+std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tracer, const std::vector<Behind>& behind,
+                                        ThreadPool& pool, Progress& progress) {
     std::vector<float> area;
     const std::vector<Part> parts = collect(scene, area);
-    const Measure measure(scene, tracer);
+    const Measure measure(scene, tracer, behind);
     const uint64_t share = kRayBudget / (kRaysPerPoint * std::max<uint64_t>(parts.size(), 1));
     const auto points = static_cast<uint32_t>(std::clamp<uint64_t>(share, kLeastPoints, kMostPoints));
     std::vector<float> blind(parts.size(), 0.0f); ///< of parts that look flipped

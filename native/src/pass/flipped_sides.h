@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "accel/embree_scene.h"
+#include "accel/solids.h"
 #include "base/parallel.h"
 
 namespace ajar {
@@ -18,7 +18,8 @@ namespace ajar {
 /// room in the void whose normals point out of it.
 ///
 /// No light is needed; an unlit sky is nothing to look at. The same for any number of threads. Throws Cancelled.
-std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tracer, ThreadPool& pool,
-                                        Progress& progress);
+/// behind: of find_solids().
+std::vector<Warning> find_flipped_sides(const Snapshot& scene, const Tracer& tracer, const std::vector<Behind>& behind,
+                                        ThreadPool& pool, Progress& progress);
 
 } // namespace ajar

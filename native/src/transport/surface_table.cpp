@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport/surface_table.h"
 
-#include "accel/solids.h"
 #include "receiver/uv_raster.h"
 
 namespace ajar {
 
-SurfaceTable::SurfaceTable(const Snapshot& scene, const Tracer& tracer)
+SurfaceTable::SurfaceTable(const Snapshot& scene, const std::vector<Behind>& behind)
     : entries_(scene.triangles.size()), flags_(scene.triangles.size()) {
-    const std::vector<Behind> behind = find_solids(scene, tracer);
     for (uint32_t i = 0; i < scene.triangles.size(); ++i) {
         const Triangle& t = scene.triangles[i];
         const Material& material = scene.materials[t.material];

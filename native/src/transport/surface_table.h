@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "accel/embree_scene.h"
+#include "accel/solids.h"
 #include "base/parallel.h"
 
 namespace ajar {
@@ -25,7 +25,8 @@ public:
         kMirrored = 16, ///< the normal is minus the cross product
         kSolid = 32     ///< of a solid (find_solids): its backs are black
     };
-    SurfaceTable(const Snapshot& scene, const Tracer& tracer);
+    /// behind: of find_solids().
+    SurfaceTable(const Snapshot& scene, const std::vector<Behind>& behind);
 
     uint8_t flags(uint32_t triangle) const { return flags_[triangle]; }
     const Entry& entry(uint32_t triangle) const { return entries_[triangle]; }
