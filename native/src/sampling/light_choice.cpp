@@ -9,6 +9,7 @@ namespace {
 
 constexpr uint32_t kMostFine = 256;
 constexpr float kFineShare = 0.995f;                   ///< of the tile's weight that is chosen from with care
+constexpr uint32_t kMoreFine = 32;                     ///< candidates beyond it, where walls hide those
 constexpr uint32_t kMostProbes = 32, kLeastProbes = 8; ///< receivers of the tile that estimate importance
 constexpr uint32_t kProbedPairs = 8192;                ///< of receivers and emitters, if so few probes do
 constexpr uint32_t kVisibilityRays = 16;               ///< per candidate and tile
@@ -103,16 +104,34 @@ LightChoice::Seen LightChoice::look(const Tracer& tracer, const LightmapReceiver
     return seen;
 }
 
-uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
-                                       uint32_t seed) {
-    visibility_.assign(fine_, 1.0f);
-    uint64_t rays = 0;
-    float seen_weight = 0.0f, unseen_weight = 0.0f;
-    std::vector<uint32_t> unseen;
+/// Looks for candidates in the order of their shares: those that make up most of the weight, and while walls hide
+/// these, weaker ones, until what is seen outweighs what was not looked for.
+std::vector<LightChoice::Seen> LightChoice::look_for_candidates(const Tracer& tracer,
+                                                                const LightmapReceivers& receivers, const Tile& tile,
+                                                                uint32_t seed, uint64_t& rays) {
     std::vector<Seen> all;
-    for (uint32_t c = 0; c < fine_; ++c) {
+    double seen_weight = 0.0, rest = 0.0;
+    for (const Candidate& c : candidates_) rest += c.weight;
+    const size_t most = std::min<size_t>({candidates_.size(), kMostFine, fine_ + kMoreFine});
+    for (uint32_t c = 0; c < most && (c < fine_ || seen_weight < rest); ++c) {
         const Seen& s = all.emplace_back(look(tracer, receivers, tile, c, seed));
         rays += s.rays;
+        if (s.arrived != 0) seen_weight += candidates_[c].weight;
+        rest -= candidates_[c].weight;
+    }
+    fine_ = static_cast<uint32_t>(all.size());
+    return all;
+}
+
+uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                                       uint32_t seed) {
+    uint64_t rays = 0;
+    const std::vector<Seen> all = look_for_candidates(tracer, receivers, tile, seed, rays);
+    visibility_.assign(fine_, 1.0f);
+    float seen_weight = 0.0f, unseen_weight = 0.0f;
+    std::vector<uint32_t> unseen;
+    for (uint32_t c = 0; c < fine_; ++c) {
+        const Seen& s = all[c];
         visibility_[c] =
             std::max(kVisibilityFloor, (static_cast<float>(s.arrived) + 0.25f) / (static_cast<float>(s.rays) + 0.5f));
         if (s.arrived != 0)
@@ -121,9 +140,14 @@ uint64_t LightChoice::learn_visibility(const Tracer& tracer, const LightmapRecei
             unseen.push_back(c), unseen_weight += candidates_[c].weight * visibility_[c];
     }
     // Behind a wall even the strongest lamp should not take the samples from a candle in the room.
-    const float scale =
-        seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(unseen_weight, 1e-30f)) : 1.0f;
+    const auto scale_to = [&](float weight) {
+        return seen_weight > 0.0f ? std::min(1.0f, kUnseenShare * seen_weight / std::max(weight, 1e-30f)) : 1.0f;
+    };
+    const float scale = scale_to(unseen_weight);
     for (const uint32_t c : unseen) visibility_[c] *= scale;
+    float rest = 0.0f;
+    for (size_t c = fine_; c < candidates_.size(); ++c) rest += candidates_[c].weight;
+    rest_scale_ = scale_to(rest);
     seen_ = seen_weight > 0.0f || fine_ < candidates_.size();
     find_variance(all);
     return rays;
@@ -151,7 +175,8 @@ uint64_t LightChoice::begin(const Tracer& tracer, const LightmapReceivers& recei
     const uint64_t rays = learn_visibility(tracer, receivers, tile, seed);
     rest_running_.clear();
     float rest = 0.0f;
-    for (size_t i = fine_; i < candidates_.size(); ++i) rest_running_.push_back(rest += candidates_[i].weight);
+    for (size_t i = fine_; i < candidates_.size(); ++i)
+        rest_running_.push_back(rest += rest_scale_ * candidates_[i].weight);
     running_.resize(size_t{tile.count} * (fine_ + 1));
     for (uint32_t local = 0; local < tile.count; ++local) {
         const uint32_t r = tile.first + local;

@@ -57,6 +57,8 @@ private:
     };
     Seen look(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile, uint32_t candidate,
               uint32_t seed) const;
+    std::vector<Seen> look_for_candidates(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
+                                          uint32_t seed, uint64_t& rays);
     uint64_t learn_visibility(const Tracer& tracer, const LightmapReceivers& receivers, const Tile& tile,
                               uint32_t seed);
     void find_variance(const std::vector<Seen>& seen);
@@ -71,6 +73,7 @@ private:
     std::vector<Candidate> candidates_; ///< strongest first; the first fine_ are weighed per receiver
     uint32_t fine_ = 0, base_ = 0;
     std::vector<float> visibility_;   ///< [fine_]
+    float rest_scale_ = 1.0f;         ///< of the weights of the others
     std::vector<float> running_;      ///< [tile.count][fine_ + 1] running weights, last is the rest
     std::vector<float> rest_running_; ///< candidates from fine_ on
     std::vector<uint32_t> slot_of_;   ///< per emitter: candidate index or kNone
