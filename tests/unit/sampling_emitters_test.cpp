@@ -310,17 +310,22 @@ TEST(Emitters, TheSkyAddsUpToItsIrradiance) {
 
 // ---- bright texels ---------------------------------------------------------------------------
 
+/// A whole bright texel about a point, on triangle 0.
+BrightPatch bright_square(uint32_t texel, const Vec3& center, const Vec3& edge_x, const Vec3& edge_y,
+                          const Vec3& normal, const Vec3& radiance) {
+    BrightPatch p{texel, 0, {}, center - 0.5f * (edge_x + edge_y), edge_x, edge_y, normal, radiance, {}};
+    for (const Vec2& c : {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)}) p.shape.corner[p.shape.count++] = c;
+    return p;
+}
+
 /// A wall of 6 x 4 bright texels of edge 0.1, radiance by column, on page texels 100 and on.
-std::vector<BrightTexel> bright_wall() {
-    std::vector<BrightTexel> out;
+std::vector<BrightPatch> bright_wall() {
+    std::vector<BrightPatch> out;
     for (uint32_t y = 0; y < 4; ++y)
         for (uint32_t x = 0; x < 6; ++x)
-            out.push_back({100 + y * 16 + x,
-                           Vec3(0.1f * static_cast<float>(x), 0.0f, 0.1f * static_cast<float>(y)),
-                           {0.1f, 0, 0},
-                           {0, 0, 0.1f},
-                           {0, -1, 0},
-                           Vec3(1.0f + static_cast<float>(x))});
+            out.push_back(bright_square(100 + y * 16 + x,
+                                        Vec3(0.1f * static_cast<float>(x), 0.0f, 0.1f * static_cast<float>(y)),
+                                        {0.1f, 0, 0}, {0, 0, 0.1f}, {0, -1, 0}, Vec3(1.0f + static_cast<float>(x))));
     return out;
 }
 
@@ -329,16 +334,17 @@ TEST(BrightTexels, DensitiesAddToOnePerEmitter) {
     lit.kit.page(16, 16);
     const EmitterSet set = lit.build().with_bright_texels(bright_wall());
     std::map<uint32_t, double> sum;
-    for (const BrightTexel& t : bright_wall()) {
+    for (const BrightPatch& t : bright_wall()) {
         float density = 0.0f;
-        const uint32_t e = set.bright_emitter(t.texel, density);
+        const uint32_t e = set.bright_emitter(t.texel, 0, density);
         ASSERT_LT(e, set.count());
         sum[e] += density * 0.01;
     }
     EXPECT_GE(sum.size(), 2u); // at most 16 share one
     for (const auto& [e, s] : sum) EXPECT_NEAR(s, 1.0, 1e-5) << e;
     float density;
-    EXPECT_EQ(set.bright_emitter(0, density), kNone);
+    EXPECT_EQ(set.bright_emitter(0, 0, density), kNone);
+    EXPECT_EQ(set.bright_emitter(bright_wall()[0].texel, 1, density), kNone) << "another triangle of the texel";
 }
 
 TEST(BrightTexels, SamplesAddUpToTheIrradiance) {
@@ -349,8 +355,8 @@ TEST(BrightTexels, SamplesAddUpToTheIrradiance) {
     const EmitterSet set = plain.with_bright_texels(bright_wall());
     const Vec3 p(0.2f, -0.5f, 0.1f), n = glm::normalize(Vec3(0.2f, 1.0f, 0.1f));
     double expected = 0.0;
-    for (const BrightTexel& t : bright_wall()) {
-        const Vec3 a = t.center - 0.5f * (t.edge_x + t.edge_y), b = a + t.edge_x, c = b + t.edge_y, d = a + t.edge_y;
+    for (const BrightPatch& t : bright_wall()) {
+        const Vec3 a = t.origin, b = a + t.edge_x, c = b + t.edge_y, d = a + t.edge_y;
         expected += t.radiance.x * (irradiance({a, b, c}, p, n) + irradiance({a, c, d}, p, n));
     }
     const kit::Sample got = sampled_irradiance(set, all(set), p, n);
@@ -372,7 +378,7 @@ TEST(BrightTexels, TheDensityOfASampleIsThatOfItsTexel) {
             const auto x = static_cast<uint32_t>(std::floor(s.target.x / 0.1f + 0.5f)),
                        y = static_cast<uint32_t>(std::floor(s.target.z / 0.1f + 0.5f));
             float density = 0.0f;
-            ASSERT_EQ(set.bright_emitter(100 + y * 16 + x, density), e);
+            ASSERT_EQ(set.bright_emitter(100 + y * 16 + x, 0, density), e);
             const float cosine = s.direction.y; // the wall's normal is -y
             ASSERT_NEAR(s.pdf / (density * s.distance * s.distance / cosine), 1.0f, 1e-3f);
         }
@@ -440,11 +446,11 @@ TEST(Emitters, ImportanceOfSlightlyBentPanelsReachesBehindTheirPlane) {
 TEST(BrightTexels, ImportanceIsZeroOnlyWhereNoSampleLights) { // of a wall bent like a barrel
     Lit lit;
     lit.kit.page(16, 16);
-    std::vector<BrightTexel> barrel;
+    std::vector<BrightPatch> barrel;
     for (uint32_t i = 0; i < 6; ++i) {
         const float a = 0.06f * static_cast<float>(i);
         const Vec3 normal(std::sin(a), -std::cos(a), 0.0f), along(std::cos(a), std::sin(a), 0.0f);
-        barrel.push_back({100 + i, 1.7f * normal, 0.1f * along, {0, 0, 0.1f}, normal, Vec3(2.0f)});
+        barrel.push_back(bright_square(100 + i, 1.7f * normal, 0.1f * along, {0, 0, 0.1f}, normal, Vec3(2.0f)));
     }
     const EmitterSet set = lit.build().with_bright_texels(barrel);
     ASSERT_LT(set.count(), 6u) << "nothing shares an emitter";

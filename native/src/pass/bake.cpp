@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "pass/bright_patches.h"
 #include "pass/tile_estimate.h"
 
 namespace ajar {
@@ -96,21 +97,18 @@ void Baker::bounce(uint32_t index) {
     keep_bounce(current_);
 }
 
-EmitterSet Baker::find_bright_texels() {
-    std::vector<BrightTexel> bright;
+EmitterSet Baker::with_bright_texels() {
+    BrightTexels bright;
     if (settings_.bounces > 0) {
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r)
             level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
-        for (const uint32_t r : bright_receivers(s_.scene, s_.receivers, level)) {
-            Vec4& radiance = radiance_[s_.receivers.texel[r]];
-            bright.push_back(bright_texel(s_.scene, s_.receivers, r));
-            bright.back().radiance = Vec3(radiance);
-            radiance.w += float{kTexelBright};
-        }
+        bright = find_bright_texels(s_.scene, s_.receivers, level,
+                                    [&](uint32_t r) { return Vec3(radiance_[s_.receivers.texel[r]]); });
+        for (const uint32_t r : bright.receivers) radiance_[s_.receivers.texel[r]].w += float{kTexelBright};
     }
-    result_.bright_texels = static_cast<uint32_t>(bright.size());
-    return s_.emitters.with_bright_texels(std::move(bright));
+    result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());
+    return s_.emitters.with_bright_texels(std::move(bright.patches));
 }
 
 void Baker::find_source() {
@@ -130,7 +128,7 @@ void Baker::find_source() {
                     result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
         set_radiance(result_.source);
     }
-    final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels());
     source_end_ = progress_.elapsed();
 }
 

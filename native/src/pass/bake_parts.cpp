@@ -7,8 +7,7 @@ namespace ajar {
 
 namespace {
 
-constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
-constexpr double kBounceShare = 0.2;  ///< most of the time left that bounces after the first may take
+constexpr double kBounceShare = 0.2; ///< most of the time left that bounces after the first may take
 constexpr uint32_t kLeastBounceSamples = 16;
 constexpr uint32_t kLeastRingRays = 16;
 constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce rays if their normals agree
@@ -18,43 +17,6 @@ constexpr float kQuadNormal = 0.95f; ///< receivers of a 2x2 block share bounce 
 bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b) {
     return receivers.shares[a] != 0 && receivers.shares[b] != 0 &&
            glm::dot(receivers.frame[a].z, receivers.frame[b].z) >= kQuadNormal;
-}
-
-BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t r) {
-    const uint32_t triangle = receivers.triangle[r];
-    const Triangle& t = scene.triangles[triangle];
-    const auto uv = texel_triangle(scene, triangle);
-    const Page& page = scene.pages[scene.instance_of(triangle).page];
-    const auto local = static_cast<uint32_t>(receivers.texel[r] - page.first_texel);
-    const Vec2 a = uv[1] - uv[0], b = uv[2] - uv[0], c = Vec2(local % page.width, local / page.width) + 0.5f - uv[0];
-    const float det = a.x * b.y - a.y * b.x;
-    const Vec3 origin = scene.positions[t.vertex[0]], ea = scene.positions[t.vertex[1]] - origin,
-               eb = scene.positions[t.vertex[2]] - origin;
-    BrightTexel out;
-    out.texel = receivers.texel[r];
-    out.edge_x = (ea * b.y - eb * a.y) / det;
-    out.edge_y = (eb * a.x - ea * b.x) / det;
-    out.center = origin + out.edge_x * c.x + out.edge_y * c.y;
-    out.normal = scene.geometric_normal(triangle);
-    out.presence = scene.presence(triangle);
-    return out;
-}
-
-std::vector<uint32_t> bright_receivers(const Snapshot& scene, const LightmapReceivers& receivers,
-                                       const std::vector<float>& luminance_of) {
-    double mean = 0.0, weight = 0.0;
-    for (uint32_t r = 0; r < receivers.count(); ++r) {
-        const double area = double(receivers.texel_size[r]) * receivers.texel_size[r];
-        mean += area * luminance_of[r];
-        weight += area;
-    }
-    const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
-    std::vector<uint32_t> out;
-    for (uint32_t r = 0; r < receivers.count(); ++r)
-        if (receivers.full[r] != 0 && receivers.cut[r] == 0 && luminance_of[r] > threshold &&
-            scene.is_gathered(receivers.triangle[r]))
-            out.push_back(r);
-    return out;
 }
 
 RayPlan ring_rays(const RayPlan& plan) {

@@ -45,14 +45,6 @@ struct MeasuredNoise {
 /// Receivers of one block share coarse light if no wall stands between and their normals agree.
 bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b);
 
-/// The parallelogram that a texel covers on its triangle, without radiance.
-BrightTexel bright_texel(const Snapshot& scene, const LightmapReceivers& receivers, uint32_t receiver);
-
-/// Receivers whose texels stand out by luminance: worth aiming at. Only texels that one triangle
-/// fills can be aimed at exactly, and those that no gather ray meets reflect nothing.
-std::vector<uint32_t> bright_receivers(const Snapshot& scene, const LightmapReceivers& receivers,
-                                       const std::vector<float>& luminance_of);
-
 /// Rays per receiver of a bounce: blocks of four receivers share theirs.
 inline uint32_t bounce_rays(const ajar_settings& settings) { return std::max(settings.bounce_samples / 4, 4u); }
 

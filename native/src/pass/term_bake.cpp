@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pass/term_bake.h"
 
+#include "pass/bright_patches.h"
 #include "pass/term_estimate.h"
 
 namespace ajar {
@@ -228,20 +229,17 @@ void TermBaker::bounce(uint32_t index) {
     take(tiles);
 }
 
-EmitterSet TermBaker::find_bright_texels() {
-    std::vector<BrightTexel> bright;
+EmitterSet TermBaker::with_bright_texels() {
+    BrightTexels bright;
     if (settings_.bounces > 0) {
+        const auto radiance = [&](uint32_t r) { return source_.total(table_, r) * s_.receivers.albedo[r] * kInvPi; };
         std::vector<float> level(s_.receivers.count());
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r)
-            level[r] = luminance(source_.total(table_, r) * s_.receivers.albedo[r]) * kInvPi;
-        for (const uint32_t r : bright_receivers(s_.scene, s_.receivers, level)) {
-            bright.push_back(bright_texel(s_.scene, s_.receivers, r));
-            bright.back().radiance = source_.total(table_, r) * s_.receivers.albedo[r] * kInvPi;
-            radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;
-        }
+        for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(radiance(r));
+        bright = find_bright_texels(s_.scene, s_.receivers, level, radiance);
+        for (const uint32_t r : bright.receivers) radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;
     }
-    result_.bright_texels = static_cast<uint32_t>(bright.size());
-    return s_.emitters.with_bright_texels(std::move(bright));
+    result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());
+    return s_.emitters.with_bright_texels(std::move(bright.patches));
 }
 
 /// A texel keeps a light set's term if the set lights it directly or is brighter there than a share
@@ -295,7 +293,7 @@ void TermBaker::find_source() {
     radiance_ = rows_.radiance_rows(
         settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune * fineness(settings_), settings_.seed) : source_,
         s_.scene.texel_count());
-    final_emitters_ = std::make_unique<EmitterSet>(find_bright_texels());
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels());
     source_end_ = progress_.elapsed();
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/work_clock.h"
+#include "receiver/uv_raster.h"
 #include "sampling/alias_table.h"
 #include "sampling/emission_cells.h"
 #include "sampling/sky_sampler.h"
@@ -36,15 +37,20 @@ struct EmitterSample {
     }
 };
 
-/// A lightmap texel that is so bright that it is worth aiming at: a parallelogram that reflects
-/// radiance from its front.
-struct BrightTexel {
-    uint32_t texel; ///< index over all pages
-    Vec3 center{0.0f};
-    Vec3 edge_x{0.0f}, edge_y{0.0f};
+/// The part of a bright lightmap texel that lies on one triangle, worth aiming at: it reflects radiance from its front.
+struct BrightPatch {
+    uint32_t texel;     ///< index over all pages
+    uint32_t triangle;  ///< of the snapshot
+    TexelPolygon shape; ///< texels from origin
+    Vec3 origin{0.0f};
+    Vec3 edge_x{0.0f}, edge_y{0.0f}; ///< m per texel
     Vec3 normal{0.0f};
     Vec3 radiance{0.0f};    ///< W/(m^2 sr)
     Presence presence = {}; ///< of its surface
+
+    Vec3 at(const Vec2& p) const { return origin + p.x * edge_x + p.y * edge_y; }
+    float area() const { return shape.area() * glm::length(glm::cross(edge_x, edge_y)); }
+    Vec3 center() const;
 };
 
 /// Everything that next-event estimation can aim at: lamps, emissive triangles or clusters of them, an
@@ -87,10 +93,11 @@ public:
     float sky_pdf(const Vec3& w) const { return sky_->pdf(w); }
     uint32_t emissive_triangles() const { return emissive_count_; }
 
-    /// This set plus bright texels; neighbours in the list with like normals share an emitter.
-    EmitterSet with_bright_texels(std::vector<BrightTexel> texels) const;
-    /// Emitter of a bright texel and its pick density per square metre; kNone for other texels.
-    uint32_t bright_emitter(uint32_t texel, float& density) const;
+    /// This set plus bright texels; neighbours in the list with like normals share an emitter. Patches of one texel
+    /// follow each other.
+    EmitterSet with_bright_texels(std::vector<BrightPatch> patches) const;
+    /// Emitter of a bright texel's part on a triangle and its pick density per square metre; kNone for others.
+    uint32_t bright_emitter(uint32_t texel, uint32_t triangle, float& density) const;
     /// Picks a lamp, emissive cluster or sky (no bright texel) for a point anywhere, roughly by
     /// importance; kNone if nothing lights it.
     uint32_t pick_anywhere(const Vec3& p, const Vec3& n, uint32_t seed, float& chance) const;
@@ -148,12 +155,13 @@ private:
     AliasTable anywhere_; ///< over all emitters but bright texels
 
     struct BrightEntry {
+        uint32_t texel, triangle;
         uint32_t emitter;
         float density; ///< per m^2
     };
-    std::vector<BrightTexel> bright_;
+    std::vector<BrightPatch> bright_;
     std::vector<float> bright_running_;  ///< running sums of power inside clusters
-    std::vector<uint32_t> bright_index_; ///< per page texel: into bright_entries_, or kNone
+    std::vector<uint32_t> bright_index_; ///< per page texel: first in bright_entries_, or kNone
     std::vector<BrightEntry> bright_entries_;
 };
 

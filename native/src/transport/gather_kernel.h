@@ -388,7 +388,7 @@ struct Gatherer {
         const uint32_t texel = lit_texel(ray, hit);
         float weight = 1.0f, density = 0.0f;
         if ((sink.flags(texel) & kTexelBright) != 0 && o.direct != nullptr)
-            if (const uint32_t e = g.emitters.bright_emitter(texel, density); e != EmitterSet::kNone) {
+            if (const uint32_t e = g.emitters.bright_emitter(texel, hit.triangle, density); e != EmitterSet::kNone) {
                 const float facing =
                     std::max(std::abs(glm::dot(ray.direction, g.scene.geometric_normal(hit.triangle))), 1e-9f);
                 weight = mis_weight(e, density * hit.t * hit.t / facing, from);
