@@ -53,9 +53,15 @@ std::vector<float> relative_errors(const JobOutput& o) {
     if (levels.empty()) return {};
     const float floor = dark_level(levels);
     std::vector<float> errors;
-    for (size_t r = 0; r < levels.size(); ++r)
-        if (o.pages.validity[o.receivers.texel[r]] == 1.0f && levels[r] + floor > 0.0f)
-            errors.push_back(std::min(o.bake.all_on_error()[r] / (levels[r] + floor), 1.0f));
+    for (size_t r = 0; r < levels.size(); ++r) {
+        if (o.pages.validity[o.receivers.texel[r]] != 1.0f || !(levels[r] + floor > 0.0f)) continue;
+        float error = o.bake.all_on_error()[r], level = levels[r] + floor;
+        if (!o.bake.missed.empty()) { // most texels lack it, few have far too much, and none counts as more than 1
+            const float missed = o.bake.missed[r], part = o.bake.missed_error[r];
+            error = std::sqrt(std::max(error * error - part * part, 0.0f) + missed * missed), level += missed;
+        }
+        errors.push_back(std::min(error / level, 1.0f));
+    }
     std::sort(errors.begin(), errors.end());
     return errors;
 }

@@ -25,14 +25,16 @@ struct ErrorCalibration {
 
 /// What a bake found, per receiver unless said otherwise.
 struct BakeResult {
-    std::vector<Vec3> irradiance;           ///< W/m^2 along the shading normal, stored part
-    std::vector<float> sh;                  ///< [count][9] luminance of incident radiance, tangent frame
-    std::vector<float> sh_rgb;              ///< [count][27] if kept
-    std::vector<float> standard_error;      ///< of the irradiance's luminance, W/m^2
-    std::vector<float> total;               ///< luminance with everything open, present and lit; empty without elements
-    std::vector<float> total_error;         ///< standard error of total
-    std::vector<float> samples;             ///< gather rays
-    std::vector<float> inside;              ///< share of rays that met the inside of a solid close by
+    std::vector<Vec3> irradiance;      ///< W/m^2 along the shading normal, stored part
+    std::vector<float> sh;             ///< [count][9] luminance of incident radiance, tangent frame
+    std::vector<float> sh_rgb;         ///< [count][27] if kept
+    std::vector<float> standard_error; ///< of the irradiance's luminance, W/m^2
+    std::vector<float> total;          ///< luminance with everything open, present and lit; empty without elements
+    std::vector<float> total_error;    ///< standard error of total
+    std::vector<float> missed;       ///< luminance that it lacks where few rays find the light, W/m^2; empty if nothing
+    std::vector<float> missed_error; ///< part of the standard error for that
+    std::vector<float> samples;      ///< gather rays
+    std::vector<float> inside;       ///< share of rays that met the inside of a solid close by
     std::vector<std::vector<Vec3>> bounces; ///< irradiance of every bounce, all lights, if kept
     std::vector<Vec3> source;               ///< irradiance of all lights and bounces that the final gather reflected
 
@@ -71,7 +73,7 @@ private:
     void set_radiance(const std::vector<Vec3>& irradiance);
     void share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const;
     /// Emitters of the final gather: the scene's, and the texels that stand out.
-    EmitterSet find_bright_texels();
+    EmitterSet with_bright_texels();
     void keep_bounce(std::vector<Vec3>& irradiance);
     void plan_rays();
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,

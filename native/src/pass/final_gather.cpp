@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "pass/bake.h"
+#include "pass/missed_light.h"
 #include "pass/tile_estimate.h"
 #include "pass/twin_check.h"
 
@@ -287,6 +288,7 @@ void Baker::calibrate_error() {
         false);
     result_.calibration = check.finish(source_rays_ratio(settings_));
     for (float& e : result_.standard_error) e *= result_.calibration.factor;
+    state_missed_light(s_.receivers, result_);
 }
 
 } // namespace ajar

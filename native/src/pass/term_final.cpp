@@ -3,6 +3,7 @@
 #include <atomic>
 #include <numeric>
 
+#include "pass/missed_light.h"
 #include "pass/term_estimate.h"
 #include "pass/twin_check.h"
 
@@ -236,6 +237,7 @@ void TermBaker::calibrate_error(const std::vector<TilePlan>& plan) {
     for (auto* v : {&result_.standard_error, &result_.total_error})
         for (float& e : *v) e *= result_.calibration.factor;
     for (TermLight& l : result_.terms.light) l.standard_error *= result_.calibration.factor;
+    state_missed_light(s_.receivers, result_);
 }
 
 } // namespace ajar
