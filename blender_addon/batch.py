@@ -41,7 +41,9 @@ def parse(arguments):
     parser.add_argument("--out", metavar="DIR", required=True, help="folder of the results")
     parser.add_argument("--density", type=_positive, metavar="N", help="texels per metre")
     parser.add_argument("--samples", type=_count, metavar="N", help="exactly N final gather rays per texel")
-    parser.add_argument("--noise", type=_positive, metavar="X", help="relative standard error per texel")
+    parser.add_argument(
+        "--noise", type=_positive, metavar="X", help="relative standard error that 95%% of the texels keep"
+    )
     parser.add_argument("--bounces", type=_count_or_none, metavar="N", help="diffuse bounces")
     parser.add_argument("--time-limit", type=_positive, metavar="S", help="seconds for the whole bake")
     parser.add_argument("--threads", type=_count_or_none, metavar="N", help="worker threads, 0 for all")

@@ -32,11 +32,11 @@ ENGINE_FIELDS = (
     Field(
         "noise_target",
         "float",
-        0.05,
+        0.12,
         0.0,
         1.0,
         "",
-        "Relative standard error wanted per texel; 0 uses the sample count",
+        "Relative standard error that 95% of the texels keep; 0 uses the sample count",
         "Noise target",
     ),
     Field(
@@ -228,7 +228,7 @@ SCENE_FIELDS = (
         0.0,
         1.0,
         "",
-        "Relative standard error per texel; 0 takes the preset's",
+        "Relative standard error that 95% of the texels keep; 0 takes the preset's",
         "Noise target",
     ),
     _BY_NAME["time_limit"],

@@ -21,7 +21,7 @@ from .extract import layout as layout_extract
 from .extract import snapshot as snapshot_extract
 
 INTERVAL = 0.15  # seconds between steps in the user interface
-_SHOWN_ERRORS = ("estimated_rms", "p95", "target", "share_reached", "spread", "next_step")
+_SHOWN_ERRORS = ("unknown", "estimated_rms", "p95", "target", "share_reached", "spread", "next_step")
 _LEAST_SHARE, _MOST_SHARES = 0.03, 4  # of a bake's time: effects that the panel names
 PATIENCE = 0.8  # seconds a worker has to stop when asked
 

@@ -19,13 +19,13 @@ def _preset(noise, samples, bounce, direct, positions):
     }
 
 
-# Noise targets are relative standard errors per texel; the rest are engine fields. Sample counts are
-# the most that a texel gets: the target decides.
+# Noise targets are relative standard errors that 95 % of the texels keep; the rest are engine fields. Sample
+# counts are the most that a texel gets: the target decides.
 PRESETS = {
-    "DRAFT": _preset(0.20, 256, 32, 256, 4),
-    "PREVIEW": _preset(0.05, 1024, 64, 1024, 4),
-    "PRODUCTION": _preset(0.015, 8192, 128, 8192, 8),
-    "REFERENCE": _preset(0.005, 65536, 256, 65536, 16),
+    "DRAFT": _preset(0.4, 512, 32, 512, 4),
+    "PREVIEW": _preset(0.12, 2048, 64, 2048, 4),
+    "PRODUCTION": _preset(0.035, 32768, 128, 32768, 8),
+    "REFERENCE": _preset(0.012, 262144, 256, 65536, 16),
 }
 
 

@@ -64,14 +64,16 @@ def _density(density, quick):
 
 def _noise(base, quick):
     """The target moves its cap along: halving the noise takes four times the rays."""
-    target = base["noise_target"] or 0.05
+    target = base["noise_target"] or 0.12
     trials = []
     for f in (2.0, 0.5) if quick else (4.0, 2.0, 0.5, 0.25):
         caps = {
             k: min(1 << 16, max(16, _power_of_two(base[k] / (f * f)))) for k in ("samples", "direct_samples")
         }
-        settings = {"noise_target": target * f, **caps}
-        trials.append(Trial("noise target", round(target * f, 5), settings, cost=1.0 / (f * f)))
+        noise = min(target * f, 1.0)
+        trials.append(
+            Trial("noise target", round(noise, 5), {"noise_target": noise, **caps}, cost=1.0 / (f * f))
+        )
     return trials
 
 

@@ -6,9 +6,6 @@ from .. import checks, job
 from ..apply import record
 from .common import Properties, Sidebar, draw_text
 
-# A stated error that is known no better than this, relative to itself, is shown with its doubt.
-UNSURE = 0.25
-
 
 def _duration(seconds):
     minutes, seconds = divmod(int(round(seconds)), 60)
@@ -98,10 +95,10 @@ def draw_last_bake(layout, context):
 
 
 def _error_lines(error):
-    if "estimated_rms" in error:
+    if "unknown" in error:
+        yield f"Error: unknown, {error['unknown']} (about {error['estimated_rms']:.0%} ± {error['spread']:.0%} of it)"
+    elif "estimated_rms" in error:
         yield f"Error: {error['estimated_rms']:.1%} (95% of texels within {error.get('p95', 0.0):.1%})"
-    if error.get("spread", 0.0) > UNSURE:
-        yield f"Few bright samples rule the error: it is known to ±{error['spread']:.0%} only"
     if error.get("target"):
         yield f"Target: {error['target']:.1%}, reached by {error.get('share_reached', 0.0):.0%} of texels"
     following = error.get("next_step")

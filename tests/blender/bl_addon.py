@@ -205,9 +205,9 @@ def check_uv_layers():
 def check_settings():
     """Scene settings reach the engine; a batch's overrides win; a sample count is exact."""
     scene, _cube = fresh()
-    assert settings.engine_settings(scene)["noise_target"] == 0.05
+    assert settings.engine_settings(scene)["noise_target"] == 0.12
     scene.ajar.preset = "DRAFT"
-    assert settings.engine_settings(scene)["noise_target"] == 0.20
+    assert settings.engine_settings(scene)["noise_target"] == 0.4
     scene.ajar.noise_target = 0.1
     assert abs(settings.engine_settings(scene)["noise_target"] - 0.1) < 1e-6
     fixed = settings.engine_settings(scene, {"samples": 256, "bounces": 2, "texels_per_meter": 4.0})

@@ -208,6 +208,7 @@ def test_last_bake_says_what_it_knows():
             "time_limited": True,
             "time_shares": [["doors", 0.31], ["sky", 0.2]],
             "error": {
+                "unknown": "few bright samples",
                 "estimated_rms": 0.04,
                 "p95": 0.09,
                 "spread": 0.4,
@@ -222,8 +223,8 @@ def test_last_bake_says_what_it_knows():
     drawn = " ".join(draw(panel("AJAR_PT_sidebar_last")))
     for said in (
         "time limit",
-        "4.0%",
-        "±40%",
+        "unknown, few bright samples",
+        "± 40%",
         "50% of texels",
         "4 min 0 s",
         "99.0%",

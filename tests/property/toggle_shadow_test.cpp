@@ -34,7 +34,7 @@ struct Slab {
 std::vector<double> light(const Slab& slab, uint32_t seed) {
     ajar_settings s = kit::settings(1, 1024);
     s.direct_samples = 1024;
-    s.noise_target = 0.015f;
+    s.noise_target = 0.035f;
     s.positions_per_texel = 8;
     s.seed = seed;
     const kit::Bake bake(slab.scene, s);

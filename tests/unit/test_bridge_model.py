@@ -27,7 +27,7 @@ def test_defaults_are_in_range():
 
 
 @pytest.mark.parametrize(
-    "preset, noise", [("DRAFT", 0.2), ("PREVIEW", 0.05), ("PRODUCTION", 0.015), ("REFERENCE", 0.005)]
+    "preset, noise", [("DRAFT", 0.4), ("PREVIEW", 0.12), ("PRODUCTION", 0.035), ("REFERENCE", 0.012)]
 )
 def test_presets(preset, noise):
     settings = model.engine_settings(preset, bounces=3, seed=None)
@@ -40,7 +40,7 @@ def test_samples_alone_turn_the_target_off():
     assert settings["samples"] == 128 and settings["noise_target"] == 0.0
     assert settings["direct_samples"] == 32
     with_target = model.engine_settings("PREVIEW", samples=100, noise_target=0.1)
-    assert with_target["noise_target"] == 0.1 and with_target["direct_samples"] == 1024
+    assert with_target["noise_target"] == 0.1 and with_target["direct_samples"] == 2048
     assert model.engine_settings("PREVIEW", samples=100, direct_samples=7)["direct_samples"] == 7
 
 

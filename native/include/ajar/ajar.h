@@ -264,7 +264,7 @@ enum { AJAR_LIGHT_PATCHES_NONE = 0, AJAR_LIGHT_PATCHES_MONO = 1, AJAR_LIGHT_PATC
 typedef struct ajar_settings {
     uint32_t struct_size;
     uint32_t bounces;             /* diffuse bounces of every light; 0 = direct only */
-    float noise_target;           /* relative standard error per texel; 0 = use samples */
+    float noise_target;           /* relative standard error that 95 % of texels keep; 0 = use samples */
     float time_limit;             /* s, whole bake; 0 = none */
     uint32_t samples;             /* final gather rays per texel when noise_target is 0, else the cap; power of two */
     uint32_t bounce_samples;      /* rays per texel and intermediate bounce; power of two */

@@ -75,16 +75,20 @@ json error_json(const Job& job, const JobOutput& o) {
                          : double(e[std::min(e.size() - 1, static_cast<size_t>(q * static_cast<double>(e.size())))]);
     };
     const double rms = e.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(e.size()));
-    const double gather = job.progress().stage_seconds(AJAR_STAGE_GATHER);
-    return {{"estimated_rms", rms},
-            {"p50", at(0.5)},
-            {"p95", at(0.95)},
-            {"target", job.settings().noise_target},
-            {"share_reached",
-             e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
-            {"calibration", o.bake.calibration.factor},
-            {"spread", o.bake.calibration.spread},
-            {"next_step", {{"noise", rms / 2.0}, {"seconds", job.seconds() + 3.0 * gather}}}};
+    double traced = 0.0; // half the noise takes four times the rays, of the final gather and of what it reflects
+    for (const uint32_t s : {AJAR_STAGE_DIRECT, AJAR_STAGE_BOUNCES, AJAR_STAGE_GATHER})
+        traced += job.progress().stage_seconds(s);
+    json out = {{"estimated_rms", rms},
+                {"p50", at(0.5)},
+                {"p95", at(0.95)},
+                {"target", job.settings().noise_target},
+                {"share_reached",
+                 e.empty() || job.settings().noise_target <= 0.0f ? 0.0 : within / static_cast<double>(e.size())},
+                {"calibration", o.bake.calibration.factor},
+                {"spread", o.bake.calibration.spread},
+                {"next_step", {{"noise", rms / 2.0}, {"seconds", job.seconds() + 3.0 * traced}}}};
+    if (o.bake.calibration.is_unsure()) out["unknown"] = "few bright samples";
+    return out;
 }
 
 json bounces_json(const Job& job, const JobOutput& o) {

@@ -21,6 +21,9 @@ inline constexpr float kInsideShare = 0.3f;
 struct ErrorCalibration {
     float factor = 1.0f; ///< measured over stated
     float spread = 0.0f; ///< relative standard error of the factor: large where few bright samples rule the error
+
+    /// Whether the error may as well be twice as large.
+    bool is_unsure() const { return spread > 0.25f; }
 };
 
 /// What a bake found, per receiver unless said otherwise.

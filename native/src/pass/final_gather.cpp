@@ -94,7 +94,7 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
 /// rays that the noise aimed at needs will cost.
 void Baker::plan_rays() {
     const bool timed = settings_.time_limit > 0.0f;
-    goal_ = {settings_.noise_target, 0.0f, {settings_.samples, settings_.direct_samples}, gathers()};
+    goal_ = {settings_.noise_target / kPacketSpread, 0.0f, {settings_.samples, settings_.direct_samples}, gathers()};
     first_ = goal_.most;
     if (!goal_.gathers) first_.gather = 0;
     if (!(goal_.target > 0.0f) && !timed) return;

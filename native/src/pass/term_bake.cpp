@@ -20,7 +20,7 @@ constexpr float kBouncePrune = 16.0f, kFinalPrune = 4.0f;
 /// Those shares hold for a preview. Where more rays are asked for they fall as the rays rise, so that rays lower the
 /// noise of pruning as they lower their own: rays go as the noise target's inverse square.
 float fineness(const ajar_settings& settings) {
-    constexpr float kPreviewNoise = 0.05f, kPreviewRays = 256.0f;
+    constexpr float kPreviewNoise = 0.12f, kPreviewRays = 256.0f;
     if (settings.noise_target <= 0.0f)
         return std::min(1.0f, kPreviewRays / static_cast<float>(std::max(settings.samples, 1u)));
     const float ratio = std::min(1.0f, settings.noise_target / kPreviewNoise);

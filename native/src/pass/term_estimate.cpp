@@ -218,7 +218,7 @@ std::vector<TilePlan> TermBaker::plan_rays() {
     });
     pilot_pace_ =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
-    const NoiseGoal goal{settings_.noise_target, dark_level(pilot), most, gathers(),
+    const NoiseGoal goal{settings_.noise_target / kPartSpread, dark_level(pilot), most, gathers(),
                          fit_noise_model(trials, small, large)};
     if (settings_.noise_target > 0.0f) plan = plan_tiles(pilot, small, goal);
     if (settings_.time_limit > 0.0f)
