@@ -20,12 +20,14 @@ def _preset(noise, samples, bounce, direct, positions):
 
 
 # Noise targets are relative standard errors that 95 % of the texels keep; the rest are engine fields. Sample
-# counts are the most that a texel gets: the target decides.
+# counts are the most that a texel gets: the target decides. Light that is reflected has noise of its own, which rays
+# of the final gather do not lower, only bounce samples: an office with 130 lamps in sets aimed at 3.5% came to 9.3%
+# with 128 of them, to 4.4% with 1024.
 PRESETS = {
     "DRAFT": _preset(0.4, 512, 32, 512, 4),
     "PREVIEW": _preset(0.12, 2048, 64, 2048, 4),
-    "PRODUCTION": _preset(0.035, 32768, 128, 32768, 8),
-    "REFERENCE": _preset(0.012, 262144, 256, 65536, 16),
+    "PRODUCTION": _preset(0.04, 32768, 1024, 32768, 8),
+    "REFERENCE": _preset(0.012, 262144, 4096, 65536, 16),
 }
 
 

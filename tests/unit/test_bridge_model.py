@@ -27,7 +27,7 @@ def test_defaults_are_in_range():
 
 
 @pytest.mark.parametrize(
-    "preset, noise", [("DRAFT", 0.4), ("PREVIEW", 0.12), ("PRODUCTION", 0.035), ("REFERENCE", 0.012)]
+    "preset, noise", [("DRAFT", 0.4), ("PREVIEW", 0.12), ("PRODUCTION", 0.04), ("REFERENCE", 0.012)]
 )
 def test_presets(preset, noise):
     settings = model.engine_settings(preset, bounces=3, seed=None)
