@@ -10,7 +10,7 @@ constexpr uint32_t kPositions = 4;
 LightmapReceivers receivers_of(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage, ThreadPool& pool,
                                Progress& progress) {
     std::vector<Warning> ignored;
-    return make_receivers(scene, tracer, coverage, kPositions, pool, progress, ignored);
+    return make_receivers(scene, tracer, coverage, find_solids(scene, tracer), kPositions, pool, progress, ignored);
 }
 
 } // namespace

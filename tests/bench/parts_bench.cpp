@@ -49,9 +49,10 @@ void build_receivers(benchmark::State& state, const BenchScene& scene) {
     ThreadPool pool(1);
     Progress progress;
     std::vector<Warning> warnings;
+    const std::vector<Behind> behind = find_solids(scene.snapshot(), scene.tracer());
     for (auto _ : state)
-        benchmark::DoNotOptimize(
-            make_receivers(scene.snapshot(), scene.tracer(), scene.coverage(), kPositions, pool, progress, warnings));
+        benchmark::DoNotOptimize(make_receivers(scene.snapshot(), scene.tracer(), scene.coverage(), behind, kPositions,
+                                                pool, progress, warnings));
     count_items(state, scene.receivers().count());
 }
 

@@ -65,12 +65,12 @@ void Job::bake(Progress& progress) {
     const Tracer tracer(scene);
     progress.begin_stage(AJAR_STAGE_RECEIVERS, 0.06f);
     const Coverage coverage = rasterize(scene, pool, progress);
-    output_.receivers =
-        make_receivers(scene, tracer, coverage, settings_.positions_per_texel, pool, progress, output_.warnings);
+    const std::vector<Behind> behind = find_solids(scene, tracer);
+    output_.receivers = make_receivers(scene, tracer, coverage, behind, settings_.positions_per_texel, pool, progress,
+                                       output_.warnings);
     if (output_.receivers.count() == 0)
         throw Error(AJAR_ERROR_INPUT, "nothing in the scene has lightmap texels; mark a mesh as lightmapped",
                     scene.name);
-    const std::vector<Behind> behind = find_solids(scene, tracer);
     for (Warning& w : find_flipped_sides(scene, tracer, behind, pool, progress))
         output_.warnings.push_back(std::move(w));
     const SurfaceTable surfaces(scene, behind);

@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/owen_sobol.h"
+#include "receiver/push_out.h"
 #include "receiver/texel_square.h"
 
 namespace ajar {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int kAlbedoSamples = 16;
 constexpr uint32_t kSidePoints = 16; ///< points of a texel that tell into which parts a wall cuts it
+constexpr float kLargePart = 0.25f;  ///< of those points: the part before a wall without thickness stands for the texel
 constexpr float kLowCover = 0.125f;  ///< texel edges: what hangs that low over a surface hides it
 constexpr float kUpright = 0.2f;     ///< cosine between normals
 constexpr float kFlat = 0.9999f;     ///< cosine between normals of what counts as one plane
@@ -84,8 +86,9 @@ struct TexelPoint {
 /// Ray origin of a position, and what stands for it while a switchable solid covers it.
 struct Spot {
     Vec3 origin{0.0f};
-    Vec3 plane{0.0f}; ///< geometric normal
-    MovedPosition moved;
+    Vec3 plane{0.0f};       ///< geometric normal
+    bool is_pushed = false; ///< lies beside its texel, out of a thing that stands on it
+    MovedPosition moved{};
     /// Where it is while all switchable things are there.
     const Vec3& shown() const { return moved.exists() ? moved.origin : origin; }
 };
@@ -95,6 +98,7 @@ struct Builder {
     const Snapshot& scene;
     const Tracer& tracer;
     const Coverage& coverage;
+    PushOut push_out;
     SwitchSolids solids;
     std::vector<std::pair<uint32_t, uint32_t>> runs; ///< fragments [begin, end) of each receiver
     std::vector<TexelKind> kind;                     ///< [receivers]
@@ -117,6 +121,7 @@ struct Builder {
     Spots scattered_spots(uint32_t receiver, uint32_t base);
     void leave_covered(uint32_t receiver, uint32_t base, Spots& spots);
     void keep_one_side(uint32_t receiver, uint32_t base, Spots& spots);
+    bool is_before_sheet(uint32_t receiver, const Spot& a, const Spot& b) const;
     bool is_open(uint32_t receiver, const Spots& spots) const;
     void join_moved();
     void join_planes();
@@ -124,7 +129,6 @@ struct Builder {
     Vec3 look_out(uint32_t receiver) const;
     bool is_walled_off(uint32_t receiver, uint32_t from) const;
     uint32_t stand_in(uint32_t receiver) const;
-    Vec3 push_out(Vec3 p, const Frame& frame, float size);
     void set_frame(uint32_t receiver);
     void set_albedo(uint32_t receiver);
 };
@@ -236,31 +240,15 @@ Vec3 Builder::shading_normal(const TexelPoint& p) const {
     return normalize_or(n, scene.geometric_normal(p.triangle));
 }
 
-/// A sample inside a solid sees the solid's back faces; it is moved before the nearest one.
-Vec3 Builder::push_out(Vec3 p, const Frame& frame, float size) {
-    for (int round = 0; round < 2; ++round) {
-        Hit nearest;
-        nearest.t = size * std::numbers::sqrt2_v<float>;
-        Vec3 direction(0.0f);
-        for (const Vec3& w : {frame.x, -frame.x, frame.y, -frame.y}) {
-            const Hit hit = tracer.intersect({p, w, 0.0f, nearest.t}, kMaskGather);
-            if (hit.triangle == kMiss) continue;
-            if (hit.back) nearest = hit, direction = w;
-        }
-        if (nearest.triangle == kMiss) break;
-        p = p + direction * nearest.t;
-        p += scene.geometric_normal(nearest.triangle) * (10.0f * tracer.offset_distance(p));
-        pushed.fetch_add(1, std::memory_order_relaxed);
-    }
-    return p;
-}
-
 /// Where a ray that stands for a point of the texel starts.
 Spot Builder::spot_at(uint32_t r, const TexelPoint& p) {
     Spot s;
     s.plane = scene.geometric_normal(p.triangle);
     s.origin = tracer.offset(smooth_position(p), s.plane);
-    s.origin = push_out(s.origin, out.frame[r], out.texel_size[r]);
+    uint64_t moves = 0;
+    s.origin = push_out.out_of_the_dark(s.origin, out.frame[r], out.texel_size[r], moves);
+    s.is_pushed = moves != 0;
+    if (s.is_pushed) pushed.fetch_add(moves, std::memory_order_relaxed);
     if (!solids.empty()) s.moved = solids.move_out(s.origin, out.frame[r], out.texel_size[r]);
     return s;
 }
@@ -292,7 +280,8 @@ void Builder::leave_covered(uint32_t r, uint32_t base, Spots& spots) {
 }
 
 /// Light on the two sides of a wall must not mix in one texel: where its positions do not see each other,
-/// all are taken from the largest of the parts that a wall cuts it into.
+/// all are taken from the largest of the parts that a wall cuts it into, or from the one before a wall without
+/// thickness, where people look at it, unless that is small.
 void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
     const size_t n = spots.size();
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
@@ -305,13 +294,27 @@ void Builder::keep_one_side(uint32_t r, uint32_t base, Spots& spots) {
     out.cut[r] = 1;
     Spots points = spots, best, side;
     for (const Spot& s : scattered_spots(r, base)) points.push_back(s);
+    const auto is_large = [&](const Spots& part) {
+        const auto own = std::count_if(part.begin(), part.end(), [](const Spot& s) { return !s.is_pushed; });
+        return static_cast<float>(own) >= kLargePart * static_cast<float>(points.size());
+    };
     for (const Spot& a : points) {
         side.clear();
         for (const Spot& b : points)
             if (&a == &b || sees(a, b)) side.push_back(b);
-        if (side.size() > best.size()) best = side;
+        const bool before = !best.empty() && is_large(side) && is_before_sheet(r, side[0], best[0]),
+                   behind = !best.empty() && is_large(best) && is_before_sheet(r, best[0], side[0]);
+        if (before || (!behind && side.size() > best.size())) best = side;
     }
     for (size_t k = 0; k < n; ++k) spots[k] = best[k * best.size() / n];
+}
+
+/// Whether the way from a to b leads first through the front of a wall, and the way back through its back.
+bool Builder::is_before_sheet(uint32_t r, const Spot& a, const Spot& b) const {
+    const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]), way = b.shown() - a.shown();
+    const Hit there = tracer.intersect({a.shown() + up, way, 0.0f, 1.0f}, kMaskGather);
+    return there.triangle != kMiss && !there.back &&
+           tracer.intersect({b.shown() + up, -way, 0.0f, 1.0f}, kMaskGather).back;
 }
 
 /// A wall between two texels of a block ends all sharing in it. What is far from all blocks of charts takes the
@@ -428,7 +431,7 @@ bool Builder::is_open(uint32_t r, const Spots& spots) const {
     const Vec3 up = out.frame[r].z * (kSideHeight * out.texel_size[r]);
     const Vec3 low = spots[0].origin - 0.49f * (x + y), high = spots.back().origin + 0.49f * (x + y);
     const Vec3 side = spots[0].origin + (static_cast<float>(columns) - 0.51f) * x - 0.49f * y;
-    const Spot corners[4] = {{low, {}, {}}, {side, {}, {}}, {high, {}, {}}, {low + high - side, {}, {}}};
+    const Spot corners[4] = {{low}, {side}, {high}, {low + high - side}};
     for (int k = 0; k < 4; ++k) {
         const Vec3 a = corners[k].origin, b = corners[(k + 1) % 4].origin;
         if (is_covered(r, corners[k]) || tracer.occluded({a + up, b - a, 0.0f, 1.0f}, kMaskWall)) return false;
@@ -525,9 +528,10 @@ TileParts split(const LightmapReceivers& receivers, const Tile& tile) {
 }
 
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
-                                 uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
-                                 std::vector<Warning>& warnings) {
-    Builder b{scene, tracer, coverage, SwitchSolids(scene, tracer), {}, {}, {}, {}, {}, {}};
+                                 const std::vector<Behind>& behind, uint32_t positions_per_texel, ThreadPool& pool,
+                                 Progress& progress, std::vector<Warning>& warnings) {
+    Builder b{scene, tracer, coverage, PushOut(scene, tracer, behind), SwitchSolids(scene, tracer, behind), {}, {}, {},
+              {},    {},     {}};
     b.order();
     const size_t count = b.runs.size();
     b.out.positions_per_texel = positions_per_texel;

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "accel/embree_scene.h"
+#include "accel/solids.h"
 #include "base/parallel.h"
 #include "receiver/switch_solids.h"
 #include "receiver/uv_raster.h"
@@ -114,9 +114,9 @@ TileParts split(const LightmapReceivers& receivers, const Tile& tile);
 
 /// Turns coverage into receivers: positions by clipped area, terminator fix, push-out of solids
 /// (algorithms.md 9.1, 9.2, 9.4), of switchable ones while these are there. They do not depend on the seed of the bake:
-/// what side of a wall a texel shows stays. Adds warnings about UVs to warnings.
+/// what side of a wall a texel shows stays. behind: of find_solids(). Adds warnings about UVs to warnings.
 LightmapReceivers make_receivers(const Snapshot& scene, const Tracer& tracer, const Coverage& coverage,
-                                 uint32_t positions_per_texel, ThreadPool& pool, Progress& progress,
-                                 std::vector<Warning>& warnings);
+                                 const std::vector<Behind>& behind, uint32_t positions_per_texel, ThreadPool& pool,
+                                 Progress& progress, std::vector<Warning>& warnings);
 
 } // namespace ajar

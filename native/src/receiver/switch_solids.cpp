@@ -3,8 +3,6 @@
 
 #include <map>
 
-#include "accel/solids.h"
-
 namespace ajar {
 
 namespace {
@@ -14,9 +12,9 @@ constexpr float kClearance = 10.0f; ///< ray offsets between a face and what is 
 
 } // namespace
 
-SwitchSolids::SwitchSolids(const Snapshot& scene, const Tracer& tracer) : scene_(scene), tracer_(tracer) {
+SwitchSolids::SwitchSolids(const Snapshot& scene, const Tracer& tracer, const std::vector<Behind>& behind)
+    : scene_(scene), tracer_(tracer) {
     if (!scene.has_switches()) return;
-    const std::vector<Behind> behind = find_solids(scene, tracer);
     std::map<uint32_t, Box> of_instance;
     for (const Triangle& t : scene.triangles) {
         const Instance& instance = scene.instances[t.instance];

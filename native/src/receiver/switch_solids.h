@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "accel/embree_scene.h"
+#include "accel/solids.h"
 
 namespace ajar {
 
@@ -20,7 +20,8 @@ struct MovedPosition {
 /// them: as with fixed solids, such positions are moved before the nearest face, but only while the solid is there.
 class SwitchSolids {
 public:
-    SwitchSolids(const Snapshot& scene, const Tracer& tracer);
+    /// behind: of find_solids().
+    SwitchSolids(const Snapshot& scene, const Tracer& tracer, const std::vector<Behind>& behind);
     bool empty() const { return boxes_.empty(); }
     /// A ray origin p of a texel with this frame and edge (m). Solids that reach further than a few texels around it
     /// hide it altogether, and it stays.
