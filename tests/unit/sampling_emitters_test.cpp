@@ -480,6 +480,29 @@ TEST(Emitters, PickingAnywhereIsUnbiased) {
     }
 }
 
+TEST(Emitters, PickingAnywhereFindsTheLampsNearby) {
+    // Of 144 equal lamps 8 m apart, all the light at a point near some of them by one pick: its relative deviation is
+    // 1.9, 0.9 and 1.2 at these places; of picks that know nothing of the place 5.0, 2.4 and 3.8.
+    Lit lit;
+    for (int i = 0; i < 144; ++i)
+        lit.kit.light(lit.kit.lamp(AJAR_LIGHT_POINT, Vec3(8 * (i % 12) - 44, 8 * (i / 12) - 44, 3), 50.0f));
+    const EmitterSet& set = lit.build();
+    const Vec3 n(0, 0, 1);
+    for (const Vec3& place : {Vec3(4.5f, 3.2f, 1.0f), Vec3(-20.0f, 13.0f, -2.0f), Vec3(41.0f, -37.0f, 2.0f)}) {
+        const Vec3 p = lit.local(place);
+        double all = 0.0;
+        for (uint32_t e = 0; e < set.count(); ++e) all += set.importance(e, p, n);
+        kit::Sample found;
+        for (uint32_t i = 0; i < 100000; ++i) {
+            float chance;
+            const uint32_t e = set.pick_anywhere(p, n, hash_combine(3, i), chance);
+            found.add(e == kNone ? 0.0 : set.importance(e, p, n) / chance / all);
+        }
+        EXPECT_NEAR(found.mean(), 1.0, 4.5 * found.error());
+        EXPECT_LT(found.error() * std::sqrt(found.count()), 2.0) << place.x;
+    }
+}
+
 TEST(Emitters, PickingWhereNothingShinesFindsNothing) {
     Lit lit;
     float chance;

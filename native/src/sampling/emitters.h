@@ -10,6 +10,7 @@
 #include "receiver/uv_raster.h"
 #include "sampling/alias_table.h"
 #include "sampling/emission_cells.h"
+#include "sampling/nearby.h"
 #include "sampling/sky_sampler.h"
 #include "scene/snapshot.h"
 
@@ -140,6 +141,7 @@ private:
     EmitterSample sample_bright(const Cluster& c, const Vec3& p, Vec2 u) const;
     void add_bright_cluster(uint32_t first, uint32_t count);
     void weigh_for_anywhere();
+    float brings(uint32_t e, const Vec3& p) const;
 
     const Snapshot& scene_;
     std::shared_ptr<const SkySampler> sky_;
@@ -153,6 +155,7 @@ private:
     uint32_t sky_emitter_ = kNone;
     uint32_t emissive_count_ = 0;
     AliasTable anywhere_; ///< over all emitters but bright texels
+    std::shared_ptr<const NearbyEmitters> nearby_;
 
     struct BrightEntry {
         uint32_t texel, triangle;
