@@ -273,14 +273,16 @@ void TermBaker::find_thresholds() {
 
 /// Whether a receiver keeps a term's light. Products of several elements must also stand out of
 /// their noise, for their light is mostly a small difference, unless lamps shine or cast a shadow there.
+/// Terms that only the final gather met count too: light by way of a surface without a lightmap comes nowhere earlier,
+/// and the few rays of the source miss most of 200 doors side by side.
 bool TermBaker::keeps(uint32_t receiver, const Term& term, const TermLight& light) const {
-    const uint32_t id = table_.find(term);
-    if (id == TermTable::kUnknown) return false;
-    const bool direct = direct_.of(receiver, id) != Vec3(0.0f);
+    const uint32_t id = table_.find(term), changed = table_.find(Term(term.set()));
+    const bool direct = id != TermTable::kUnknown && direct_.of(receiver, id) != Vec3(0.0f);
     if (direct && term.order() == 1 && term.set() != kNoElement) return true;
     const float level = std::abs(luminance(light.irradiance));
-    return level > threshold_[id] && (direct || term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL ||
-                                      level > light.standard_error);
+    return level > (changed != TermTable::kUnknown ? threshold_[changed] : 0.0f) &&
+           (direct || term.order() < 2 || settings_.combinations == AJAR_COMBINATIONS_ALL ||
+            level > light.standard_error);
 }
 
 void TermBaker::find_source() {
