@@ -89,6 +89,7 @@ T* state(const RTCFilterFunctionNArguments* a) {
 
 /// Where all_switches leaves what it meets.
 struct Collector : Filter {
+    const Snapshot& scene;
     std::vector<Hit>& out;
     float begin; ///< hits up to here do not count
 };
@@ -99,6 +100,12 @@ void collect(const RTCFilterFunctionNArguments* a) {
     a->valid[0] = 0;
     if (!(RTCRayN_tfar(a->ray, a->N, 0) > c->begin)) return;
     const Crossing place = c->place(a);
+    // The common edge of two triangles of a pane dims once. (Coincident surfaces of other elements count.)
+    const Presence presence = c->scene.presence(place.triangle);
+    if (std::any_of(c->out.begin(), c->out.end(), [&](const Hit& h) {
+            return place.is_same({h.triangle, h.u, h.v}, c->scene) && c->scene.presence(h.triangle) == presence;
+        }))
+        return;
     const float side = RTCRayN_dir_x(a->ray, a->N, 0) * RTCHitN_Ng_x(a->hit, a->N, 0) +
                        RTCRayN_dir_y(a->ray, a->N, 0) * RTCHitN_Ng_y(a->hit, a->N, 0) +
                        RTCRayN_dir_z(a->ray, a->N, 0) * RTCHitN_Ng_z(a->hit, a->N, 0);
@@ -354,12 +361,10 @@ void Tracer::all_switches(const Ray& ray, uint32_t mask, std::vector<Hit>& out) 
     out.clear();
     if (impl_->switches.empty() || !(ray.tfar > ray.tnear)) return;
     RTCRayHit q = make_ray(ray, mask);
-    Collector c{{{}, impl_->switches.first}, out, ray.tnear > 0.0f ? ray.tnear : -1.0f};
+    Collector c{{{}, impl_->switches.first}, scene_, out, ray.tnear > 0.0f ? ray.tnear : -1.0f};
     ask_filtered<rtcIntersect1>(impl_->switches.scene, &q, c.context, collect, kNearestArguments);
     std::sort(out.begin(), out.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.triangle < b.triangle; });
-    out.erase(std::unique(out.begin(), out.end(), [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; }),
-              out.end());
     for (Hit& h : out) h.back = h.back != scene_.triangles[h.triangle].mirrored;
 }
 
