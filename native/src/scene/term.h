@@ -107,15 +107,20 @@ public:
     bool require(const std::vector<Element>& elements, const Presence& p) {
         for (uint32_t i = 0; i < count_; ++i)
             if (element_[i] == p.element) return state_[i] == p.state;
-        if (count_ == kCapacity) {
-            at_start_ *= presence_factors(elements[p.element], p.state).constant;
-            not_followed_ = p.element;
-            return true; // followed to its end even where it brings nothing at the start: what is cut is counted
-        }
+        if (count_ == kCapacity) return count_at_start(elements, p);
         element_[count_] = static_cast<uint16_t>(p.element);
         state_[count_++] = p.state;
         return true;
     }
+    /// Whether a state of this element would be followed, or counts as it is at the start.
+    bool follows(uint32_t element) const {
+        for (uint32_t i = 0; i < count_; ++i)
+            if (element_[i] == element) return true;
+        return count_ < kCapacity;
+    }
+    /// The path goes on through a see-through surface whose element is not followed; what passes at the start is for
+    /// the caller to multiply.
+    void leave_at_start(uint32_t element) { not_followed_ = element; }
     /// The state is a fact for this receiver, which lies on the element's own surface: it takes
     /// part in contradictions but not in the product.
     void assume(const Presence& p) {
@@ -136,9 +141,28 @@ public:
     uint32_t not_followed() const { return not_followed_; }
 
 private:
-    uint16_t element_[kCapacity] = {};
+    // A path that brings nothing at the start is followed to its end all the same: what is cut is counted.
+    bool count_at_start(const std::vector<Element>& elements, const Presence& p) {
+        not_followed_ = p.element;
+        const auto id = static_cast<uint16_t>(p.element);
+        for (uint32_t i = 0; i < beyond_count_; ++i)
+            if (beyond_[i] == id) return (beyond_states_ >> i & 1u) == p.state;
+        const float at_start = presence_factors(elements[p.element], p.state).constant;
+        at_start_ *= at_start;
+        // 0 and 1 are what they are however often they come.
+        if (at_start == 0.0f || at_start == 1.0f || beyond_count_ == kBeyond) return true;
+        beyond_states_ = static_cast<uint8_t>(beyond_states_ | (p.state ? 1u : 0u) << beyond_count_);
+        beyond_[beyond_count_++] = id;
+        return true;
+    }
+
+    /// Elements beyond kCapacity, partly there at the start, that a path remembers: a second surface of the same counts
+    /// once. More than these on one ray count as many times as they are met.
+    static constexpr uint32_t kBeyond = 8;
+
+    uint16_t element_[kCapacity] = {}, beyond_[kBeyond] = {};
     bool state_[kCapacity] = {};
-    uint8_t count_ = 0, assumed_ = 0;
+    uint8_t count_ = 0, assumed_ = 0, beyond_count_ = 0, beyond_states_ = 0;
     float at_start_ = 1.0f;
     uint32_t not_followed_ = kNoElement;
 };

@@ -285,6 +285,13 @@ struct Gatherer {
                 const Hit& hit = switches[next];
                 const Presence p = g.scene.presence(hit.triangle);
                 const uint8_t f = g.surfaces.flags(hit.triangle);
+                if ((f & SurfaceTable::kTransmits) != 0 && !through.condition.follows(p.element)) {
+                    const auto shines = [&](Through& there, Way& behind) {
+                        return !is_inside(hit, f) && shine(ray, hit, f, there, from, behind);
+                    };
+                    if (!pass_unfollowed(p, through, way, shines)) return false;
+                    continue;
+                }
                 Through there = through;
                 Way behind = way;
                 if (there.condition.require(g.scene.elements, p) && !is_inside(hit, f) &&
@@ -295,6 +302,20 @@ struct Gatherer {
             }
         }
         return end_segment(ray, end, through, from, way);
+    }
+
+    /// A see-through surface whose element the way does not follow: the way goes on in one, with what passes at the
+    /// start. shines(there, behind): light of the surface itself; whether some goes through it. False if none goes on.
+    template <class Shines>
+    bool pass_unfollowed(const Presence& p, Through& through, Way& way, const Shines& shines) const {
+        const float share = presence_factors(g.scene.elements[p.element], p.state).constant;
+        Through there = through;
+        Way behind = way;
+        const bool passes = share > 0.0f && there.condition.require(g.scene.elements, p) && shines(there, behind);
+        if (share > 0.0f) way = behind;
+        through.color = (1.0f - share) * through.color + (passes ? share * there.color : Vec3(0.0f));
+        through.condition.leave_at_start(p.element);
+        return max_component(through.color) > 0.0f;
     }
 
     /// Light of a surface that is always there; true if some goes through it.

@@ -199,6 +199,16 @@ inline Effect effect_of(const Snapshot& scene, const Presence& presence) {
     return scene.elements[presence.element].kind == ElementKind::door ? Effect::doors : Effect::toggles;
 }
 
+/// See-through surfaces of elements that a path does not follow split no path in two, or n of them would make 2^n: what
+/// passes is what they let through at the start. (Front and back of one that is partly there count as two.)
+template <class Through>
+void pass_at_start(const std::vector<Element>& elements, const Presence& p, const Vec3& transmittance,
+                   Through& through) {
+    const float there = presence_factors(elements[p.element], p.state).constant;
+    through.color *= Vec3(1.0f - there) + there * transmittance;
+    through.condition.leave_at_start(p.element);
+}
+
 /// Light that passes switchable surfaces: each is absent, or there and perhaps lets some through.
 template <class Sink, class Emit>
 void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_t next, typename Sink::Through through,
@@ -206,9 +216,13 @@ void through_switches(const Snapshot& scene, const std::vector<Hit>& hits, size_
     for (; next < hits.size(); ++next) {
         const Hit& hit = hits[next];
         const Presence p = scene.presence(hit.triangle);
+        const bool transmits = scene.materials[scene.triangles[hit.triangle].material].transmits;
+        if (transmits && !through.condition.follows(p.element)) {
+            pass_at_start(scene.elements, p, scene.surface(hit.triangle, hit.u, hit.v).transmittance, through);
+            continue;
+        }
         auto there = through;
-        if (scene.materials[scene.triangles[hit.triangle].material].transmits &&
-            there.condition.require(scene.elements, p)) {
+        if (transmits && there.condition.require(scene.elements, p)) {
             there.color *= scene.surface(hit.triangle, hit.u, hit.v).transmittance;
             if (max_component(there.color) > 0.0f) through_switches<Sink>(scene, hits, next + 1, there, emit);
         }

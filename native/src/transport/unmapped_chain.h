@@ -183,6 +183,14 @@ bool Gatherer<Sink>::path_switches(const Ray& ray, const std::vector<Hit>& switc
         for (; next < switches.size(); ++next) {
             const Presence p = g.scene.presence(switches[next].triangle);
             const uint32_t own_seed = hash_combine(seed, 0x55u + static_cast<uint32_t>(next));
+            if ((g.surfaces.flags(switches[next].triangle) & SurfaceTable::kTransmits) != 0 &&
+                !through.condition.follows(p.element)) {
+                const auto shines = [&](Through& there, Way& behind) {
+                    return path_shine(ray, switches[next], there, own_seed, behind, cosine);
+                };
+                if (!pass_unfollowed(p, through, way, shines)) return false;
+                continue;
+            }
             Through there = through;
             Way behind = way;
             const bool splits_here = there.condition.require(g.scene.elements, p);
