@@ -62,12 +62,13 @@ TEST_F(TermSumsTest, ProductsThatAreNotKeptHaveNoSlot) {
 
 TEST_F(TermSumsTest, CutLightIsBookedWithItsSample) {
     TermSums sums(table);
-    sums.meet(Vec3(-2.0f));
+    sums.meet(Vec3(-2.0f), 0.25f);
     sums.cut(kDoor, Vec3(-2.0f));
     sums.end_sample(kLane, 0, Vec3(0.6f, 0.0f, 0.8f), 3.0f);
     ASSERT_EQ(sums.cuts().size(), 1u);
     EXPECT_NEAR(sums.cuts().at(kDoor), 2.0 * 3.0 * 0.8, 1e-5);
     EXPECT_EQ(sums.met(), sums.cuts().at(kDoor));
+    EXPECT_NEAR(sums.started(), 0.25 * sums.met(), 1e-5);
     EXPECT_EQ(sums.unswitched(), 0.0);
 }
 

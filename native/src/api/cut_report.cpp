@@ -42,8 +42,9 @@ std::vector<Warning> cut_warnings(const Snapshot& scene, const CutLight& cut, ui
                              : "mark doors and toggles that change together as one, or fewer of them";
     return {{scene.elements[elements[0].first].name,
              std::string("where several doors and toggles stand between a lamp and a surface, ") + share +
-                 " of the light stays as it is at the start when more than " + std::to_string(cut.most_elements) +
-                 " elements change at once (the start itself is exact): " + names + "; " + remedy}};
+                 " of the light stays as it is at the start where more than " + std::to_string(cut.most_elements) +
+                 " elements decide on it, a light set that is on being one (the start itself is exact): " + names +
+                 "; " + remedy}};
 }
 
 } // namespace ajar

@@ -21,6 +21,8 @@ struct CutLight {
         all += sums.met() * scale;
         for (const auto& [element, light] : sums.cuts()) of_element[element] += light * scale;
     }
+    /// Light that passes at the start is both in what met doors or toggles and in the terms without them.
+    void count_once(const TermSums& sums, double scale) { all -= sums.started() * scale; }
     void add(const CutLight& other) {
         all += other.all;
         for (const auto& [element, light] : other.of_element) of_element[element] += light;

@@ -77,7 +77,11 @@ bool TermBaker::raise_order(const Tile& part, const TermSums& gather, uint32_t r
     };
     add(gather, 1.0 / std::max(rays, 1u));
     if (direct != nullptr) add(*direct, 1.0);
-    if (direct != nullptr && first_ == nullptr) source_cut_[tile_of(part)] = cut;
+    if (direct != nullptr && first_ == nullptr) {
+        CutLight& told = source_cut_[tile_of(part)] = cut;
+        told.count_once(gather, 1.0 / std::max(rays, 1u));
+        told.count_once(*direct, 1.0);
+    }
     if (cut.share() <= kCutShare) return false;
     if (first_ != nullptr || settings_.combinations == AJAR_COMBINATIONS_NONE || order == kMostOrder) return false;
     order_[tile_of(part)] = order + 1;

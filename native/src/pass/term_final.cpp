@@ -37,6 +37,8 @@ void TermBaker::store_tile(const Tile& tile, const Estimate& t, FinalPart& out) 
     const float per_ray = 1.0f / static_cast<float>(std::max(t.plan.gather, 1u));
     out.cut.add(t.gather, per_ray);
     out.cut.add(t.direct, 1.0);
+    out.cut.count_once(t.gather, per_ray);
+    out.cut.count_once(t.direct, 1.0);
     out.cut.most_elements = limits_at(tile).order;
     std::vector<uint8_t> unswitched;
     for (const Term& term : t.terms) unswitched.push_back(term.switch_count() == 0);

@@ -120,7 +120,7 @@ private:
 
     /// Light that needs states of doors and toggles: each presence, constant + linear x, multiplies it.
     void arrive_if(const Condition& condition, uint32_t slot, const Vec3& light) {
-        sums_.meet(light);
+        sums_.meet(light, sums_.term(slot).switch_count() == 0 ? started(condition) : 0.0f);
         if (condition.count() == 1 && !condition.has_assumed()) return arrive_behind(condition[0], slot, light);
         Products buffers[2];
         Products *now = &buffers[0], *next = &buffers[1];
@@ -136,6 +136,13 @@ private:
         }
         if (const uint32_t e = condition.not_followed(); e != kNoElement) sums_.cut(e, light);
         for (uint32_t k = 0; k < now->count; ++k) sums_.arrive(now->of[k].slot, light * now->of[k].factor);
+    }
+    /// Share of light that passes at the start.
+    float started(const Condition& condition) const {
+        float share = condition.at_start();
+        for (uint32_t i = condition.has_assumed(); i < condition.count(); ++i)
+            share *= presence_factors(scene_.elements[condition[i].element], condition[i].state).constant;
+        return share;
     }
     /// The same for one surface, which is the common case.
     void arrive_behind(const Presence& surface, uint32_t slot, const Vec3& light) {

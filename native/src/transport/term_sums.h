@@ -87,8 +87,13 @@ public:
     }
     /// Counts light of one sample that no term has room for, and the door or toggle that it does not follow.
     void cut(uint32_t element, const Vec3& light) { pending_cuts_.push_back({element, std::abs(luminance(light))}); }
-    /// Counts light of one sample that depends on doors or toggles.
-    void meet(const Vec3& light) { pending_met_ += std::abs(luminance(light)); }
+    /// Counts light of one sample that depends on doors or toggles. at_start: share of it that passes them at the start
+    /// and so is in a term without them too.
+    void meet(const Vec3& light, float at_start) {
+        const float amount = std::abs(luminance(light));
+        pending_met_ += amount;
+        pending_started_ += amount * at_start;
+    }
     /// Irradiance that was cut so, per element, in the unit of the blocks, summed over the lanes.
     const std::unordered_map<uint32_t, double>& cuts() const { return cuts_; }
     /// Collects what one sample brings; end_sample() books it.
@@ -119,6 +124,8 @@ public:
 
     /// Irradiance that met doors or toggles, which cuts() are a part of; unit as there.
     double met() const { return met_; }
+    /// The part of met() that unswitched() has as well.
+    double started() const { return started_; }
     /// Irradiance of terms without doors and toggles, magnitudes; unit as cuts().
     double unswitched() const {
         double sum = 0.0;
@@ -209,8 +216,8 @@ private:
     std::vector<uint32_t> mark_;
     std::vector<Pending> pending_;
     std::vector<PendingCut> pending_cuts_;
-    float pending_met_ = 0.0f;
-    double met_ = 0.0;
+    float pending_met_ = 0.0f, pending_started_ = 0.0f;
+    double met_ = 0.0, started_ = 0.0;
     std::unordered_map<uint32_t, double> cuts_;
     std::vector<Recent> recent_{kRecent};
 };
@@ -218,8 +225,9 @@ private:
 inline void TermSums::end_sample(uint32_t lane, uint32_t sample, const Vec3& w, float scale) {
     if (pending_met_ != 0.0f) {
         met_ += double{pending_met_} * scale * w.z;
+        started_ += double{pending_started_} * scale * w.z;
         for (const PendingCut& c : pending_cuts_) cuts_[c.element] += double{c.light} * scale * w.z;
-        pending_met_ = 0.0f;
+        pending_met_ = pending_started_ = 0.0f;
         pending_cuts_.clear();
     }
     if (pending_.empty()) return;
