@@ -96,8 +96,8 @@ double clear_toggles(const Variant& v) {
     pile.s.sky(1.0);
     pile.s.point({0, 0, 5}, 100.0);
     pile.s.scene.commit();
-    ajar_settings settings = pile.s.settings(0, 16);
-    settings.direct_samples = 16;
+    ajar_settings settings = pile.s.settings(0, 4);
+    settings.direct_samples = 4;
     const kit::Bake bake(pile.s.scene, settings);
     const double expected = pi + from_point({0, 0, 5}, 100.0, {0, 0, 0});
     double most = 0.0;

@@ -60,7 +60,9 @@ double worst_start(const Variant& v, const std::vector<std::vector<float>>& star
     for (const std::vector<float>& start : starts)
         for (const bool in_set : {false, true}) {
             const Shelves shelves(v, start, in_set, transmittance);
-            const Layer e = shelves.at(kit::Bake(shelves.s.scene, shelves.s.settings(0, 16)), start);
+            ajar_settings settings = shelves.s.settings(0, 16);
+            settings.direct_samples = 16;
+            const Layer e = shelves.at(kit::Bake(shelves.s.scene, settings), start);
             most = std::max(most, worst_under_lamp(e, product(start, 1.0 - transmittance)));
         }
     return most;
