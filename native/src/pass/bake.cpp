@@ -84,27 +84,42 @@ void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3
 
 /// One bounce: irradiance from radiance_ into current_.
 void Baker::bounce(uint32_t index) {
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(kAimedBounce));
+    const GatherScene scene = final_scene();
     pool_.for_each(
         s_.receivers.tiles.size(), progress_,
         [&](size_t i) {
             const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
             if (tile.count == 0) return;
-            auto sums = make_sums(false);
-            progress_.add_rays(gather_tile(s_, tile, bounce_options(settings_, index), radiance_.data(), *sums));
+            auto sums = make_sums(false), aimed = make_sums(false);
+            GatherOptions o = bounce_options(settings_, index);
+            DirectGroups groups(*final_emitters_, LightRoles::reflected, {});
+            uint64_t rays = 0;
+            if (result_.bright_texels != 0) {
+                rays += begin_bounce(scene, tile, o, groups);
+                rays += sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(o.samples), 1.0f}, o.seed,
+                                      {}, *aimed);
+            }
+            rays += gather_tile(scene, tile, o, radiance_.data(), *sums);
             share_quads(tile, *sums, current_);
+            if (const uint32_t n = groups.groups()[0].samples; n != 0)
+                for (uint32_t lane = 0; lane < tile.count; ++lane)
+                    current_[tile.first + lane] += sum_of(*aimed, lane) / static_cast<float>(n);
+            progress_.add_rays(rays);
         },
         !in_background_);
     keep_bounce(current_);
 }
 
-EmitterSet Baker::with_bright_texels() {
+EmitterSet Baker::with_bright_texels(double least_share) {
     BrightTexels bright;
     if (settings_.bounces > 0) {
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r)
             level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
-        bright = find_bright_texels(s_.scene, s_.receivers, level,
-                                    [&](uint32_t r) { return Vec3(radiance_[s_.receivers.texel[r]]); });
+        bright = find_bright_texels(
+            s_.scene, s_.receivers, level, [&](uint32_t r) { return Vec3(radiance_[s_.receivers.texel[r]]); },
+            least_share);
         for (const uint32_t r : bright.receivers) radiance_[s_.receivers.texel[r]].w += float{kTexelBright};
     }
     result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());
@@ -128,7 +143,7 @@ void Baker::find_source() {
                     result_.bounces.back()[i] * (result_.bounces.size() > settings_.bounces ? 1.0f : 0.0f);
         set_radiance(result_.source);
     }
-    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels());
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(0.0));
     source_end_ = progress_.elapsed();
 }
 

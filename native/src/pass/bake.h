@@ -76,7 +76,7 @@ private:
     void set_radiance(const std::vector<Vec3>& irradiance);
     void share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const;
     /// Emitters of the final gather: the scene's, and the texels that stand out.
-    EmitterSet with_bright_texels();
+    EmitterSet with_bright_texels(double least_share);
     void keep_bounce(std::vector<Vec3>& irradiance);
     void plan_rays();
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,

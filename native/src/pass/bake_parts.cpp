@@ -86,6 +86,13 @@ GatherOptions bounce_options(const ajar_settings& settings, uint32_t index) {
     return o;
 }
 
+uint64_t begin_bounce(const GatherScene& scene, const Tile& tile, GatherOptions& options, DirectGroups& groups) {
+    const uint32_t samples = std::max(options.samples / kBrightShare, 1u);
+    options.direct = &groups;
+    return groups.begin(scene.tracer, scene.receivers, tile, samples, samples,
+                        hash_combine(options.seed, scene.receivers.texel[tile.first]));
+}
+
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed) {
     GatherOptions o;

@@ -45,6 +45,13 @@ struct MeasuredNoise {
 /// Receivers of one block share coarse light if no wall stands between and their normals agree.
 bool may_share(const LightmapReceivers& receivers, uint32_t a, uint32_t b);
 
+/// Samples per receiver and bounce that aim at bright texels, over the rays of a bounce.
+inline constexpr uint32_t kBrightShare = 4;
+
+/// Share of bright texels in all light from which on bounces aim at them: a lamp in the corner of a room has .86, and
+/// aiming halves the noise that its bounces leave; game levels of .01 to .03 only get slower.
+inline constexpr double kAimedBounce = 0.1;
+
 /// Rays per receiver of a bounce: blocks of four receivers share theirs.
 inline uint32_t bounce_rays(const ajar_settings& settings) { return std::max(settings.bounce_samples / 4, 4u); }
 
@@ -65,6 +72,9 @@ Tile pilot_part(const Tile& tile, uint32_t part);
 GatherOptions source_options(const ajar_settings& settings, const DirectGroups& groups, uint32_t seed);
 /// Gather rays of a bounce, counted from 1.
 GatherOptions bounce_options(const ajar_settings& settings, uint32_t index);
+/// Prepares samples of bright texels (LightRoles::reflected) for a tile, with which those rays share. Returns the rays
+/// traced.
+uint64_t begin_bounce(const GatherScene& scene, const Tile& tile, GatherOptions& options, DirectGroups& groups);
 /// Final gather rays of a plan that share emission with the emitter samples of groups.
 GatherOptions final_options(const RayPlan& plan, const ajar_settings& settings, const DirectGroups& groups,
                             uint32_t seed);

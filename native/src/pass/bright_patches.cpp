@@ -11,20 +11,21 @@ namespace {
 constexpr double kBrightFactor = 6.0; ///< of the mean radiance; brighter texels are aimed at
 constexpr float kLeastArea = 0.05f;   ///< texels; smaller parts of a texel are left to the gather rays
 
+/// share: see BrightTexels.
 std::vector<uint32_t> bright_receivers(const Snapshot& scene, const LightmapReceivers& receivers,
-                                       const std::vector<float>& luminance_of) {
-    double mean = 0.0, weight = 0.0;
-    for (uint32_t r = 0; r < receivers.count(); ++r) {
-        const double area = double(receivers.texel_size[r]) * receivers.texel_size[r];
-        mean += area * luminance_of[r];
-        weight += area;
-    }
-    const auto threshold = static_cast<float>(kBrightFactor * mean / std::max(weight, 1e-30));
+                                       const std::vector<float>& luminance_of, double& share) {
+    double sum = 0.0, weight = 0.0, bright = 0.0;
+    const auto area = [&](uint32_t r) { return double(receivers.texel_size[r]) * receivers.texel_size[r]; };
+    for (uint32_t r = 0; r < receivers.count(); ++r) sum += area(r) * luminance_of[r], weight += area(r);
+    const auto threshold = static_cast<float>(kBrightFactor * sum / std::max(weight, 1e-30));
     std::vector<uint32_t> out;
     for (uint32_t r = 0; r < receivers.count(); ++r)
         if (receivers.ring[r] == 0 && receivers.cut[r] == 0 && luminance_of[r] > threshold &&
-            scene.is_gathered(receivers.triangle[r]))
+            scene.is_gathered(receivers.triangle[r])) {
             out.push_back(r);
+            bright += area(r) * luminance_of[r];
+        }
+    share = bright / std::max(sum, 1e-30);
     return out;
 }
 
@@ -98,10 +99,10 @@ struct PatchFinder {
 
 BrightTexels find_bright_texels(const Snapshot& scene, const LightmapReceivers& receivers,
                                 const std::vector<float>& luminance_of,
-                                const std::function<Vec3(uint32_t)>& radiance_of) {
+                                const std::function<Vec3(uint32_t)>& radiance_of, double least_share) {
     BrightTexels out;
-    const std::vector<uint32_t> bright = bright_receivers(scene, receivers, luminance_of);
-    if (bright.empty()) return out;
+    const std::vector<uint32_t> bright = bright_receivers(scene, receivers, luminance_of, out.share);
+    if (bright.empty() || out.share < least_share) return out;
     PatchFinder finder(scene, receivers, bright);
     for (uint32_t t = 0; t < scene.triangles.size(); ++t) finder.add(t);
     for (size_t i = 0; i < bright.size(); ++i) {

@@ -13,13 +13,15 @@ namespace ajar {
 struct BrightTexels {
     std::vector<uint32_t> receivers;  ///< whose texels they are, ascending
     std::vector<BrightPatch> patches; ///< by texel
+    double share = 0.0;               ///< of all that texels send out
 };
 
 /// Texels that stand out by radiance: a lamp close to a wall leaves a spot that few gather rays find. Those that a wall
 /// cuts are left out, for their light is not the same all over, and those that no gather ray meets.
-/// luminance_of: per receiver, luminance of the radiance; radiance_of: of one, W/(m^2 sr).
+/// luminance_of: per receiver, luminance of the radiance; radiance_of: of one, W/(m^2 sr). least_share: none, if they
+/// send out less of all light.
 BrightTexels find_bright_texels(const Snapshot& scene, const LightmapReceivers& receivers,
                                 const std::vector<float>& luminance_of,
-                                const std::function<Vec3(uint32_t)>& radiance_of);
+                                const std::function<Vec3(uint32_t)>& radiance_of, double least_share);
 
 } // namespace ajar

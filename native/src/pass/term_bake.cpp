@@ -211,6 +211,8 @@ void TermBaker::direct_source() {
 
 void TermBaker::bounce(uint32_t index) {
     radiance_ = rows_.radiance_rows(current_, s_.scene.texel_count());
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(current_, kAimedBounce));
+    const GatherScene scene = final_scene();
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
     aimed_.emplace_back(tiles.size());
@@ -225,21 +227,30 @@ void TermBaker::bounce(uint32_t index) {
             aimed_[index - 1][i] = first_ != nullptr ? first_->aimed_[index - 1][i] : find_doors(tile, o.seed);
             const TileAims aims = aim_at(aimed_[index - 1][i], tile, o.samples);
             o.aims = aims.empty() ? nullptr : &aims;
-            progress_.add_rays(gather_tile(s_, tile, o, &radiance_, limits_at(tile), sums));
+            TermSums aimed(table_);
+            DirectGroups groups(*final_emitters_, LightRoles::reflected, {});
+            uint64_t rays = 0;
+            if (result_.bright_texels != 0) {
+                rays += begin_bounce(scene, tile, o, groups);
+                rays += sample_direct(scene, groups, tile, {static_cast<float>(o.samples), 1.0f, o.aims}, o.seed, false,
+                                      &radiance_, limits_at(tile), aimed);
+            }
+            rays += gather_tile(scene, tile, o, &radiance_, limits_at(tile), sums);
+            progress_.add_rays(rays);
             raise_order(tile, sums, o.samples, nullptr);
-            tiles[i] = tile_rows(tile, sums, nullptr);
+            tiles[i] = tile_rows(tile, sums, result_.bright_texels != 0 ? &aimed : nullptr);
         },
         first_ == nullptr);
     take(tiles);
 }
 
-EmitterSet TermBaker::with_bright_texels() {
+EmitterSet TermBaker::with_bright_texels(const ReceiverRows& light, double least_share) {
     BrightTexels bright;
     if (settings_.bounces > 0) {
-        const auto radiance = [&](uint32_t r) { return source_.total(table_, r) * s_.receivers.albedo[r] * kInvPi; };
+        const auto radiance = [&](uint32_t r) { return light.total(table_, r) * s_.receivers.albedo[r] * kInvPi; };
         std::vector<float> level(s_.receivers.count());
         for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(radiance(r));
-        bright = find_bright_texels(s_.scene, s_.receivers, level, radiance);
+        bright = find_bright_texels(s_.scene, s_.receivers, level, radiance, least_share);
         for (const uint32_t r : bright.receivers) radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;
     }
     result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());
@@ -299,7 +310,7 @@ void TermBaker::find_source() {
     radiance_ = rows_.radiance_rows(
         settings_.term_threshold > 0.0f ? prune(source_, kFinalPrune * fineness(settings_), settings_.seed) : source_,
         s_.scene.texel_count());
-    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels());
+    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(source_, 0.0));
     source_end_ = progress_.elapsed();
 }
 

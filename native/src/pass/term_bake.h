@@ -37,7 +37,7 @@ private:
     size_t tile_of(const Tile& part) const;
     TermLimits limits_at(const Tile& part) const;
     bool raise_order(const Tile& part, const TermSums& gather, uint32_t rays, const TermSums* direct);
-    EmitterSet with_bright_texels();
+    EmitterSet with_bright_texels(const ReceiverRows& light, double least_share);
     void find_thresholds();
     bool keeps(uint32_t receiver, const Term& term, const TermLight& light) const;
     ReceiverRows prune(const ReceiverRows& rows, float share, uint32_t seed) const;

@@ -64,6 +64,8 @@ public:
 
     uint32_t count() const { return static_cast<uint32_t>(emitters_.size()); }
     bool is_lamp(uint32_t e) const { return emitters_[e].kind == Kind::lamp; }
+    /// A cluster of bright texels.
+    bool is_bright(uint32_t e) const { return emitters_[e].kind == Kind::bright; }
     /// The lamp, or null for other emitters.
     const Light* lamp(uint32_t e) const { return is_lamp(e) ? &scene_.lights[emitters_[e].index] : nullptr; }
     /// A lamp whose beam may end within a texel.

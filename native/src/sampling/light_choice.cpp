@@ -31,7 +31,9 @@ void LightChoice::find_candidates(const LightmapReceivers& receivers, const Tile
     candidates_.clear();
     slot_of_.assign(emitters_.count(), EmitterSet::kNone);
     for (const uint32_t e : choices_)
-        if (roles_ != LightRoles::stored || !emitters_.is_primary(e)) candidates_.push_back({e, 0.0f, 0.0f, {}});
+        if (roles_ == LightRoles::all || (roles_ == LightRoles::stored && !emitters_.is_primary(e)) ||
+            (roles_ == LightRoles::reflected && emitters_.is_bright(e)))
+            candidates_.push_back({e, 0.0f, 0.0f, {}});
     weigh_candidates(receivers, tile);
     // A tile may hold surfaces of several rooms: what counts is a lamp's share where it is strong.
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {

@@ -8,8 +8,8 @@
 
 namespace ajar {
 
-/// Which lamps' direct light counts: all feed the bounces, static ones are stored.
-enum class LightRoles { all, stored };
+/// Which emitters count: all feed the bounces; those whose direct light is stored; bright texels alone, in a bounce.
+enum class LightRoles { all, stored, reflected };
 
 /// Picks emitters for the receivers of one tile in proportion to what they probably contribute:
 /// unshadowed irradiance at the receiver times the visibility that a few shadow rays of the tile
