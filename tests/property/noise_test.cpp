@@ -15,9 +15,9 @@ constexpr uint32_t kSize = 48, kSeeds = 4;
 
 /// A room of 4 x 4 x 3 m; one wall has a square hole in the middle of it, if that is above 0 m wide.
 kit::MeshData room(float hole) {
-    if (!(hole > 0.0f)) return kit::box({-2, -2, 0}, {2, 2, 3}, true);
     kit::MeshData mesh = kit::box({-2, -2, 0}, {2, 2, 3}, true);
-    // The wall at x = 2 is the fifth face: its two triangles and cell of the UVs give way to four strips.
+    if (!(hole > 0.0f)) return mesh;
+    // The wall at x = 2 is the fourth face: its two triangles and cell of the UVs give way to four strips.
     const size_t first = 6 * 3;
     mesh.corners.erase(mesh.corners.begin() + first, mesh.corners.begin() + first + 6);
     mesh.uv.erase(mesh.uv.begin() + first, mesh.uv.begin() + first + 6);

@@ -82,30 +82,34 @@ void Baker::share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3
     }
 }
 
+/// A tile's part of a bounce that aims at bright texels.
+void Baker::aimed_bounce(const GatherScene& scene, const Tile& tile, GatherOptions o) {
+    auto sums = make_sums(false), aimed = make_sums(false);
+    DirectGroups groups(scene.emitters, LightRoles::reflected, {});
+    uint64_t rays = begin_bounce(scene, tile, o, groups);
+    const DirectGroups::Group& bright = groups.groups()[0];
+    rays += sample_direct(scene, bright, tile, {static_cast<float>(o.samples), 1.0f}, o.seed, {}, *aimed);
+    rays += gather_tile(scene, tile, o, radiance_.data(), *sums);
+    share_quads(tile, *sums, current_);
+    for (uint32_t lane = 0; bright.samples != 0 && lane < tile.count; ++lane)
+        current_[tile.first + lane] += sum_of(*aimed, lane) / static_cast<float>(bright.samples);
+    progress_.add_rays(rays);
+}
+
 /// One bounce: irradiance from radiance_ into current_.
 void Baker::bounce(uint32_t index) {
-    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(kAimedBounce));
-    const GatherScene scene = final_scene();
+    const EmitterSet emitters = with_bright_texels(kAimedBounce);
+    const GatherScene scene = scene_with(emitters);
     pool_.for_each(
         s_.receivers.tiles.size(), progress_,
         [&](size_t i) {
             const Tile tile = split(s_.receivers, s_.receivers.tiles[i]).coarse;
             if (tile.count == 0) return;
-            auto sums = make_sums(false), aimed = make_sums(false);
-            GatherOptions o = bounce_options(settings_, index);
-            DirectGroups groups(*final_emitters_, LightRoles::reflected, {});
-            uint64_t rays = 0;
-            if (result_.bright_texels != 0) {
-                rays += begin_bounce(scene, tile, o, groups);
-                rays += sample_direct(scene, groups.groups()[0], tile, {static_cast<float>(o.samples), 1.0f}, o.seed,
-                                      {}, *aimed);
-            }
-            rays += gather_tile(scene, tile, o, radiance_.data(), *sums);
+            const GatherOptions o = bounce_options(settings_, index);
+            if (emitters.has_bright_texels()) return aimed_bounce(scene, tile, o);
+            auto sums = make_sums(false);
+            progress_.add_rays(gather_tile(scene, tile, o, radiance_.data(), *sums));
             share_quads(tile, *sums, current_);
-            if (const uint32_t n = groups.groups()[0].samples; n != 0)
-                for (uint32_t lane = 0; lane < tile.count; ++lane)
-                    current_[tile.first + lane] += sum_of(*aimed, lane) / static_cast<float>(n);
-            progress_.add_rays(rays);
         },
         !in_background_);
     keep_bounce(current_);

@@ -75,8 +75,9 @@ private:
     void bounce(uint32_t index);
     void set_radiance(const std::vector<Vec3>& irradiance);
     void share_quads(const Tile& tile, const TileSums& sums, std::vector<Vec3>& out) const;
-    /// Emitters of the final gather: the scene's, and the texels that stand out.
+    /// The scene's emitters, and the texels of radiance_ that stand out, if they send out this share of all light.
     EmitterSet with_bright_texels(double least_share);
+    void aimed_bounce(const GatherScene& scene, const Tile& tile, GatherOptions options);
     void keep_bounce(std::vector<Vec3>& irradiance);
     void plan_rays();
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
@@ -99,9 +100,10 @@ private:
     bool gathers() const;
     /// Seconds that the time limit leaves for the passes.
     double time_left() const;
-    GatherScene final_scene() const {
-        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_, s_.spots};
+    GatherScene scene_with(const EmitterSet& emitters) const {
+        return {s_.scene, s_.tracer, s_.surfaces, emitters, s_.receivers, progress_, s_.spots};
     }
+    GatherScene final_scene() const { return scene_with(*final_emitters_); }
 
     GatherScene s_;
     ajar_settings settings_;

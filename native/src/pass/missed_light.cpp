@@ -47,22 +47,23 @@ MissedLight add_missed_light(const LightmapReceivers& receivers, const std::vect
     const float dark = dark_level(levels) + 1e-30f;
     const auto counts = [&](uint32_t r) { return receivers.ring[r] == 0 && inside[r] <= kInsideShare; };
     const auto level = [&](uint32_t r) { return std::max(levels[r], 0.0f); };
+    const auto is_quiet = [&](uint32_t r) { return errors[r] <= kRuledByOne * (level(r) + dark); };
     for (const Tile& tile : receivers.tiles) {
         TileMean all, quiet;
         for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
             if (!counts(r)) continue;
             all.add(levels[r]);
-            if (errors[r] <= kRuledByOne * (level(r) + dark)) quiet.add(levels[r]);
+            if (is_quiet(r)) quiet.add(levels[r]);
         }
         const MissedShare missed = missed_share(all, quiet);
         for (uint32_t r = tile.first; r < tile.first + tile.count; ++r) {
             if (!counts(r)) continue;
-            const bool is_quiet = errors[r] <= kRuledByOne * (level(r) + dark);
-            if (is_quiet) out.missed[r] = level(r) * missed.share / (1.0f - missed.share);
+            const bool met = !is_quiet(r);
+            if (!met) out.missed[r] = level(r) * missed.share / (1.0f - missed.share);
             const double relative = std::hypot(errors[r], out.missed[r]) / (level(r) + out.missed[r] + dark),
                          square = std::min(relative * relative, 1.0);
             out.squares += square;
-            if (missed.share > 0.0f) out.rare += square, out.met += is_quiet ? 0.0 : 1.0;
+            if (missed.share > 0.0f) out.rare += square, out.met += met ? 1.0 : 0.0;
             out.error[r] = out.missed[r] / std::sqrt(missed.chance);
             errors[r] = std::hypot(errors[r], out.error[r]);
         }

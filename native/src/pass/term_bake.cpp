@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pass/term_bake.h"
 
+#include <optional>
+
 #include "pass/bright_patches.h"
 #include "pass/term_estimate.h"
 
@@ -211,8 +213,8 @@ void TermBaker::direct_source() {
 
 void TermBaker::bounce(uint32_t index) {
     radiance_ = rows_.radiance_rows(current_, s_.scene.texel_count());
-    final_emitters_ = std::make_unique<EmitterSet>(with_bright_texels(current_, kAimedBounce));
-    const GatherScene scene = final_scene();
+    const EmitterSet emitters = with_bright_texels(current_, kAimedBounce);
+    const GatherScene scene = scene_with(emitters);
     budget_.reset();
     std::vector<TileRows> tiles(s_.receivers.tiles.size());
     aimed_.emplace_back(tiles.size());
@@ -227,18 +229,19 @@ void TermBaker::bounce(uint32_t index) {
             aimed_[index - 1][i] = first_ != nullptr ? first_->aimed_[index - 1][i] : find_doors(tile, o.seed);
             const TileAims aims = aim_at(aimed_[index - 1][i], tile, o.samples);
             o.aims = aims.empty() ? nullptr : &aims;
-            TermSums aimed(table_);
-            DirectGroups groups(*final_emitters_, LightRoles::reflected, {});
+            std::optional<TermSums> aimed; // at bright texels
+            std::optional<DirectGroups> groups;
             uint64_t rays = 0;
-            if (result_.bright_texels != 0) {
-                rays += begin_bounce(scene, tile, o, groups);
-                rays += sample_direct(scene, groups, tile, {static_cast<float>(o.samples), 1.0f, o.aims}, o.seed, false,
-                                      &radiance_, limits_at(tile), aimed);
+            if (emitters.has_bright_texels()) {
+                rays += begin_bounce(scene, tile, o,
+                                     groups.emplace(emitters, LightRoles::reflected, std::vector<uint32_t>{}));
+                rays += sample_direct(scene, *groups, tile, {static_cast<float>(o.samples), 1.0f, o.aims}, o.seed,
+                                      false, &radiance_, limits_at(tile), aimed.emplace(table_));
             }
             rays += gather_tile(scene, tile, o, &radiance_, limits_at(tile), sums);
             progress_.add_rays(rays);
             raise_order(tile, sums, o.samples, nullptr);
-            tiles[i] = tile_rows(tile, sums, result_.bright_texels != 0 ? &aimed : nullptr);
+            tiles[i] = tile_rows(tile, sums, aimed ? &*aimed : nullptr);
         },
         first_ == nullptr);
     take(tiles);

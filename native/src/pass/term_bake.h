@@ -83,9 +83,10 @@ private:
     std::vector<uint32_t> sets_of(const Tile& tile) const;
     /// Knows what lights a tile.
     const TermBaker& guide() const { return first_ != nullptr ? *first_ : *this; }
-    GatherScene final_scene() const {
-        return {s_.scene, s_.tracer, s_.surfaces, *final_emitters_, s_.receivers, progress_, s_.spots};
+    GatherScene scene_with(const EmitterSet& emitters) const {
+        return {s_.scene, s_.tracer, s_.surfaces, emitters, s_.receivers, progress_, s_.spots};
     }
+    GatherScene final_scene() const { return scene_with(*final_emitters_); }
 
     GatherScene s_;
     ajar_settings settings_;

@@ -99,6 +99,7 @@ public:
     /// This set plus bright texels; neighbours in the list with like normals share an emitter. Patches of one texel
     /// follow each other.
     EmitterSet with_bright_texels(std::vector<BrightPatch> patches) const;
+    bool has_bright_texels() const { return !bright_.empty(); }
     /// Emitter of a bright texel's part on a triangle and its pick density per square metre; kNone for others.
     uint32_t bright_emitter(uint32_t texel, uint32_t triangle, float& density) const;
     /// Picks a lamp, emissive cluster or sky (no bright texel) for a point anywhere, roughly by
