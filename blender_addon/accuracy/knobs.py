@@ -2,6 +2,7 @@
 """Which settings are tried: each knob on its own around the preset, and the presets themselves."""
 from dataclasses import dataclass, field
 
+from .. import model
 from . import bakes
 
 PRESET = "preset"
@@ -64,7 +65,7 @@ def _density(density, quick):
 
 def _noise(base, quick):
     """The target moves its cap along: halving the noise takes four times the rays."""
-    target = base["noise_target"] or 0.12
+    target = base["noise_target"] or model.PRESETS["PREVIEW"]["noise_target"]
     trials = []
     for f in (2.0, 0.5) if quick else (4.0, 2.0, 0.5, 0.25):
         caps = {

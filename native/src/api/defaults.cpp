@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "api/guard.h"
+#include "pass/noise_plan.h"
 
 using namespace ajar;
 
@@ -76,7 +77,7 @@ AJAR_API void ajar_settings_init(ajar_settings* s) {
     if (s == nullptr) return;
     init_struct(s);
     s->bounces = 6;
-    s->noise_target = 0.12f;
+    s->noise_target = kPreviewNoise;
     s->samples = 1024;
     s->bounce_samples = 64;
     s->direct_samples = 64;

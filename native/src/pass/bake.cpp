@@ -118,12 +118,8 @@ void Baker::bounce(uint32_t index) {
 EmitterSet Baker::with_bright_texels(double least_share) {
     BrightTexels bright;
     if (settings_.bounces > 0) {
-        std::vector<float> level(s_.receivers.count());
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r)
-            level[r] = luminance(Vec3(radiance_[s_.receivers.texel[r]]));
-        bright = find_bright_texels(
-            s_.scene, s_.receivers, level, [&](uint32_t r) { return Vec3(radiance_[s_.receivers.texel[r]]); },
-            least_share);
+        const auto radiance = [&](uint32_t r) { return Vec3(radiance_[s_.receivers.texel[r]]); };
+        bright = find_bright_texels(s_.scene, s_.receivers, radiance, least_share);
         for (const uint32_t r : bright.receivers) radiance_[s_.receivers.texel[r]].w += float{kTexelBright};
     }
     result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());

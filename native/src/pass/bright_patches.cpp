@@ -98,9 +98,10 @@ struct PatchFinder {
 } // namespace
 
 BrightTexels find_bright_texels(const Snapshot& scene, const LightmapReceivers& receivers,
-                                const std::vector<float>& luminance_of,
                                 const std::function<Vec3(uint32_t)>& radiance_of, double least_share) {
     BrightTexels out;
+    std::vector<float> luminance_of;
+    for (uint32_t r = 0; r < receivers.count(); ++r) luminance_of.push_back(luminance(radiance_of(r)));
     const std::vector<uint32_t> bright = bright_receivers(scene, receivers, luminance_of, out.share);
     if (bright.empty() || out.share < least_share) return out;
     PatchFinder finder(scene, receivers, bright);
@@ -108,9 +109,10 @@ BrightTexels find_bright_texels(const Snapshot& scene, const LightmapReceivers& 
     for (size_t i = 0; i < bright.size(); ++i) {
         if (finder.found[i].empty()) continue;
         out.receivers.push_back(bright[i]);
+        const Vec3 radiance = radiance_of(bright[i]);
         for (BrightPatch& p : finder.found[i]) {
             p.texel = receivers.texel[bright[i]];
-            p.radiance = radiance_of(bright[i]);
+            p.radiance = radiance;
             out.patches.push_back(p);
         }
     }

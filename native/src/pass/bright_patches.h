@@ -18,10 +18,9 @@ struct BrightTexels {
 
 /// Texels that stand out by radiance: a lamp close to a wall leaves a spot that few gather rays find. Those that a wall
 /// cuts are left out, for their light is not the same all over, and those that no gather ray meets.
-/// luminance_of: per receiver, luminance of the radiance; radiance_of: of one, W/(m^2 sr). least_share: none, if they
+/// radiance_of: of a receiver's texel, W/(m^2 sr). least_share: none, if they
 /// send out less of all light.
 BrightTexels find_bright_texels(const Snapshot& scene, const LightmapReceivers& receivers,
-                                const std::vector<float>& luminance_of,
                                 const std::function<Vec3(uint32_t)>& radiance_of, double least_share);
 
 } // namespace ajar

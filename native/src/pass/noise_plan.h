@@ -17,6 +17,9 @@ struct NoiseModel {
     float direct_power = 1.0f;
 };
 
+/// Noise target of a preview, the default.
+inline constexpr float kPreviewNoise = 0.12f;
+
 /// A noise target is one that 95 % of the texels keep. Places of some texels are planned as one, and the noise of their
 /// texels spreads: the 95th percentile over the noise planned was 1.65 for packets of 8 of two game levels (0.9 and 0.3
 /// million texels), 1.38 of an office, and 1.79 and 1.66 for quarters of its tiles with 130 light sets and with 25

@@ -22,7 +22,7 @@ constexpr float kBouncePrune = 16.0f, kFinalPrune = 4.0f;
 /// Those shares hold for a preview. Where more rays are asked for they fall as the rays rise, so that rays lower the
 /// noise of pruning as they lower their own: rays go as the noise target's inverse square.
 float fineness(const ajar_settings& settings) {
-    constexpr float kPreviewNoise = 0.12f, kPreviewRays = 256.0f;
+    constexpr float kPreviewRays = 256.0f;
     if (settings.noise_target <= 0.0f)
         return std::min(1.0f, kPreviewRays / static_cast<float>(std::max(settings.samples, 1u)));
     const float ratio = std::min(1.0f, settings.noise_target / kPreviewNoise);
@@ -251,9 +251,7 @@ EmitterSet TermBaker::with_bright_texels(const ReceiverRows& light, double least
     BrightTexels bright;
     if (settings_.bounces > 0) {
         const auto radiance = [&](uint32_t r) { return light.total(table_, r) * s_.receivers.albedo[r] * kInvPi; };
-        std::vector<float> level(s_.receivers.count());
-        for (uint32_t r = 0; r < s_.receivers.count(); ++r) level[r] = luminance(radiance(r));
-        bright = find_bright_texels(s_.scene, s_.receivers, level, radiance, least_share);
+        bright = find_bright_texels(s_.scene, s_.receivers, radiance, least_share);
         for (const uint32_t r : bright.receivers) radiance_.flags[s_.receivers.texel[r]] |= kTexelBright;
     }
     result_.bright_texels = static_cast<uint32_t>(bright.receivers.size());
