@@ -193,11 +193,7 @@ EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const
 }
 
 EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {
-    const float target = u.x * c.power;
-    uint32_t i = c.first;
-    while (i + 1 < c.first + c.count && triangles_[i].running <= target) ++i;
-    const EmissiveTriangle& t = triangles_[i];
-    u.x = std::clamp((target - (t.running - t.power)) / t.power, 0.0f, 0x1.fffffep-1f);
+    const EmissiveTriangle& t = triangles_[find_triangle(c, u)];
     float spread;
     const Vec2 b = cells_->sample(t.triangle, u, spread);
     const Vec3 q = scene_.position(t.triangle, b.x, b.y), to = q - p;

@@ -84,6 +84,13 @@ public:
     /// in which a narrow lamp counts too.
     float importance(uint32_t e, const Vec3& p, const Vec3& n, float reach = 0.0f) const;
     EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
+    /// Asks for the memory that sample(e, p, u) will read, to do other work while it comes.
+    [[gnu::always_inline]] void prefetch(uint32_t e, const Vec2& u) const {
+        if (emitters_[e].kind != Kind::cluster) return;
+        const Cluster& c = clusters_[emitters_[e].index];
+        Vec2 on_triangle = u;
+        cells_->prefetch(triangles_[find_triangle(c, on_triangle)].triangle, on_triangle);
+    }
     /// Emitter that samples this triangle, or kNone.
     uint32_t emitter_of(uint32_t triangle) const {
         return triangle_emitter_.empty() ? kNone : triangle_emitter_[triangle];
@@ -139,6 +146,15 @@ private:
     float cluster_importance(const Cluster& c, const Vec3& p, const Vec3& n) const;
     /// As triangle_pdf, were the triangle's emission even.
     float plain_pdf(uint32_t triangle, float distance, float cosine) const;
+    /// Triangle of a cluster for u.x, which becomes the place on it.
+    uint32_t find_triangle(const Cluster& c, Vec2& u) const {
+        const float target = u.x * c.power;
+        uint32_t i = c.first;
+        while (i + 1 < c.first + c.count && triangles_[i].running <= target) ++i;
+        const EmissiveTriangle& t = triangles_[i];
+        u.x = std::clamp((target - (t.running - t.power)) / t.power, 0.0f, 0x1.fffffep-1f);
+        return i;
+    }
     EmitterSample sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const;
     EmitterSample sample_sky(const Vec2& u) const;
     EmitterSample sample_bright(const Cluster& c, const Vec3& p, Vec2 u) const;

@@ -44,6 +44,14 @@ struct ShadowPacket {
     Presence covered[kLanes]; ///< whether a switchable solid must be there; element kNoElement: none
 };
 
+/// The emitter that a sample goes to.
+struct Pick {
+    uint32_t emitter;
+    float chance; ///< that it was picked
+    Vec2 u;       ///< for the place on it
+    float spread; ///< the sequence's other number, for the place on the receiver
+};
+
 template <class Sink>
 struct DirectSampler {
     const GatherScene& g;
@@ -61,7 +69,9 @@ struct DirectSampler {
 
     void shoot(ShadowPacket& packet, uint32_t first, uint32_t begin, uint32_t end);
     bool has_moved(uint32_t first) const;
-    bool prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet, uint32_t lane) const;
+    Pick pick(uint32_t local, uint32_t sample, uint32_t samples) const;
+    bool prepare(uint32_t local, uint32_t sample, uint32_t samples, const Pick& picked, ShadowPacket& packet,
+                 uint32_t lane) const;
     bool start_at(uint32_t receiver, uint32_t position, ShadowPacket& packet, uint32_t lane, Vec3& p) const;
     void trace(ShadowPacket& packet, uint32_t first, uint32_t sample, uint32_t samples, uint32_t number);
     void finish(ShadowPacket& packet, uint32_t first, uint32_t number);
@@ -84,32 +94,42 @@ bool DirectSampler<Sink>::start_at(uint32_t receiver, uint32_t position, ShadowP
 }
 
 template <class Sink>
-bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samples, ShadowPacket& packet,
-                                  uint32_t lane) const {
-    const uint32_t r = tile.first + local;
-    const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
-    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
-    const uint32_t emitter = group.choice.pick(local, u, chance);
-    worker.set(g.emitters.effect(emitter));
+Pick DirectSampler<Sink>::pick(uint32_t local, uint32_t sample, uint32_t samples) const {
+    const uint32_t h = hash_combine(seed, g.receivers.texel[tile.first + local]);
     // The samples of one emitter follow each other: they divide its first coordinate evenly among them, and
     // the sequence spreads the second and the positions over any few in a row.
+    float u = (static_cast<float>(sample) + unit_float(hash_combine(h, sample))) / static_cast<float>(samples), chance;
+    const uint32_t emitter = group.choice.pick(local, u, chance);
     const Vec2 spread = owen_sobol(sample, h);
+    const Vec2 place(u, spread.x);
+    g.emitters.prefetch(emitter, place);
+    return {emitter, chance, place, spread.y};
+}
+
+template <class Sink>
+bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samples, const Pick& picked,
+                                  ShadowPacket& packet, uint32_t lane) const {
+    const uint32_t r = tile.first + local, emitter = picked.emitter;
+    const uint32_t h = hash_combine(seed, g.receivers.texel[r]);
+    worker.set(g.emitters.effect(emitter));
     const uint32_t positions = g.receivers.positions_per_texel,
-                   position = std::min(static_cast<uint32_t>(spread.y * static_cast<float>(positions)), positions - 1);
+                   position =
+                       std::min(static_cast<uint32_t>(picked.spread * static_cast<float>(positions)), positions - 1);
     Vec3 p;
     if (!start_at(r, position, packet, lane, p)) return false;
     const bool is_open = g.receivers.open[r] != 0 && samples >= kCellSamples * positions;
-    const Vec3 start = is_open ? g.receivers.in_cell(r, position, place_in_cell(sample, h, spread.y, positions)) : p;
-    EmitterSample s = g.emitters.sample(emitter, g.emitters.is_narrow(emitter) ? start : p, {u, spread.x});
-    if (is_near_lamp(g.receivers, r, s)) s = g.emitters.sample(emitter, p, {u, spread.x});
+    const Vec3 start =
+        is_open ? g.receivers.in_cell(r, position, place_in_cell(sample, h, picked.spread, positions)) : p;
+    EmitterSample s = g.emitters.sample(emitter, g.emitters.is_narrow(emitter) ? start : p, picked.u);
+    if (is_near_lamp(g.receivers, r, s)) s = g.emitters.sample(emitter, p, picked.u);
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f) || !g.receivers.is_above(r, position, s.direction))
         return false;
-    const float own = static_cast<float>(samples) * s.pdf * chance;
+    const float own = static_cast<float>(samples) * s.pdf * picked.chance;
     float rays = mis.gather * hemisphere_pdf(w.z, mis.share); // per steradian
     if (mis.aims != nullptr) rays += mis.aims->density(local, position, s.direction);
     const float weight = s.pdf > 0.0f ? own / (own + rays) : near_lamp_factor(g.receivers, r, position, p, s);
-    packet.scale[lane] = weight / chance;
+    packet.scale[lane] = weight / picked.chance;
     packet.emitter[lane] = emitter;
     packet.local.set(lane, w, packet.book_scale);
     packet.lit[lane] = !s.casts_shadow;
@@ -157,8 +177,12 @@ template <class Sink>
 void DirectSampler<Sink>::trace(ShadowPacket& packet, uint32_t first, uint32_t sample, uint32_t samples,
                                 uint32_t number) {
     packet.rays.prepare(kMaskShadowOpaque);
+    Pick picked[kLanes];
+    for (uint32_t lane = 0; lane < kLanes && first + lane < tile.count; ++lane)
+        picked[lane] = pick(first + lane, sample, samples);
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        packet.valid[lane] = first + lane < tile.count && prepare(first + lane, sample, samples, packet, lane) ? -1 : 0;
+        packet.valid[lane] =
+            first + lane < tile.count && prepare(first + lane, sample, samples, picked[lane], packet, lane) ? -1 : 0;
         if (packet.valid[lane] == 0) packet.rays.set(lane, Vec3(0.0f), Vec3(0, 0, 1), 0.0f);
         rays += packet.valid[lane] != 0;
     }
