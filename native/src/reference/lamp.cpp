@@ -93,13 +93,4 @@ LampPoint lamp_point(const Light& l, const Vec3& p, Pcg& random) {
     return is_area(l) ? area(l, p, random) : ball(l, p, random);
 }
 
-float lamp_strength(const Light& l, const Vec3& p, const Vec3& n) {
-    const float strength = luminance(l.intensity) * (is_area(l) ? l.area : 1.0f);
-    if (l.type == Light::Type::sun) return strength * std::max(0.0f, -glm::dot(l.axis, n) + l.radius);
-    const Vec3 to = l.position - p;
-    const float extent = is_area(l) ? 0.5f * (glm::length(l.edge_x) + glm::length(l.edge_y)) : l.radius;
-    const float square = glm::dot(to, to) + extent * extent, distance = std::sqrt(square);
-    return strength * std::max(0.0f, (glm::dot(to, n) + extent) / distance) / square;
-}
-
 } // namespace ajar

@@ -16,7 +16,4 @@ struct LampPoint {
 /// Uniform point of the lamp's area, or of the part of it that lights p.
 LampPoint lamp_point(const Light& lamp, const Vec3& p, Pcg& random);
 
-/// Roughly the light of a lamp at p on a surface with normal n: what lamps are chosen by.
-float lamp_strength(const Light& lamp, const Vec3& p, const Vec3& n);
-
 } // namespace ajar

@@ -10,7 +10,6 @@ namespace ajar {
 namespace {
 
 constexpr int kEmissionProbes = 64;
-constexpr float kPlain = 0.1f; ///< share of lamp samples that go to all alike: none is ever missed
 
 Vec2 barycentric(Pcg& random) {
     const float r = std::sqrt(random.uniform()), t = random.uniform();
@@ -27,11 +26,15 @@ float share(float own, float other) { return own > 0.0f ? own / (own + other) : 
 
 } // namespace
 
-Lights::Lights(const World& world, const std::vector<float>& weights) : world_(world), weights_(weights) {
+Lights::Lights(const World& world, const std::vector<float>& weights) : world_(world) {
     const Snapshot& s = world.scene;
     const auto weight = [&](uint32_t set) { return set == kNoElement ? 1.0f : weights[set]; };
-    for (uint32_t i = 0; i < s.lights.size(); ++i)
-        if (!s.lights[i].dark() && weight(s.lights[i].light_set) > 0.0f) lamps_.push_back(i);
+    for (uint32_t i = 0; i < s.lights.size(); ++i) {
+        const Light& l = s.lights[i];
+        if (l.dark() || !(weight(l.light_set) > 0.0f)) continue;
+        lamps_.add(i, l, weight(l.light_set));
+        if (!l.primary) static_lamps_.add(i, l, weight(l.light_set));
+    }
     double total = 0.0;
     for (uint32_t t = 0; t < s.triangles.size(); ++t) {
         const float set = weight(s.instance_of(t).light_set);
@@ -62,31 +65,12 @@ Lights::Lights(const World& world, const std::vector<float>& weights) : world_(w
 }
 
 Lights::Sample Lights::sample_lamp(const Vertex& at, Pcg& random) const {
-    const Snapshot& s = world_.scene;
-    thread_local std::vector<uint32_t> open;
-    thread_local std::vector<float> strength;
-    open.clear(), strength.clear();
-    float total = 0.0f;
-    for (const uint32_t i : lamps_) {
-        const Light& l = s.lights[i];
-        if (at.receiver && l.primary) continue;
-        open.push_back(i);
-        const float set = l.light_set == kNoElement ? 1.0f : weights_[l.light_set];
-        total += strength.emplace_back(lamp_strength(l, at.position, at.normal) * set);
-    }
-    if (open.empty()) return {};
-    const auto count = static_cast<float>(open.size());
-    size_t k = 0;
-    if (total > 0.0f && random.uniform() >= kPlain) {
-        for (float left = random.uniform() * total; k + 1 < open.size() && left >= strength[k];) left -= strength[k++];
-    } else {
-        k = std::min(static_cast<size_t>(random.uniform() * count), open.size() - 1);
-    }
-    const float chance = total > 0.0f ? (1.0f - kPlain) * strength[k] / total + kPlain / count : 1.0f / count;
-    const Light& l = s.lights[open[k]];
+    const LampTable& lamps = at.receiver ? static_lamps_ : lamps_;
+    if (lamps.empty()) return {};
+    const LampTable::Choice chosen = lamps.choose(at.position, at.normal, random);
+    const Light& l = world_.scene.lights[chosen.number];
     const LampPoint p = lamp_point(l, at.position, random);
-    const float set = l.light_set == kNoElement ? 1.0f : weights_[l.light_set];
-    return {p.direction, p.distance, p.light * (set / chance), 0.0f, l.casts_shadow};
+    return {p.direction, p.distance, p.light * (chosen.weight / chosen.chance), 0.0f, l.casts_shadow};
 }
 
 Lights::Sample Lights::sample_triangle(const Vertex& at, const SceneState& state, Pcg& random) const {

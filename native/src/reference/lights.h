@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "reference/lamp_table.h"
 #include "reference/random.h"
 #include "reference/world.h"
 
@@ -45,8 +46,7 @@ private:
     float triangle_density(uint32_t triangle, float distance, float facing) const;
 
     const World& world_;
-    const std::vector<float>& weights_;
-    std::vector<uint32_t> lamps_;
+    LampTable lamps_, static_lamps_; ///< all, and those that lightmaps hold
     std::vector<uint32_t> triangles_;
     std::vector<double> triangle_running_; ///< running sums of power
     std::vector<float> chance_per_area_;   ///< per triangle of the scene; empty: none shines

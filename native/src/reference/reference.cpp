@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t kCells = 8; ///< edge of the grid of first rays
 static_assert(kCells * kCells == kBatchPaths);
-constexpr size_t kChunk = 16;                      ///< points of one task
+constexpr size_t kChunk = 4;                       ///< points of one task
 constexpr uint32_t kLitPaths = 8;                  ///< each of them looks for every kind of source at every bounce
 constexpr uint64_t kLitStream = uint64_t{1} << 32; ///< random numbers that tell lit places from dark ones
 
