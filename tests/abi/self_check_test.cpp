@@ -218,6 +218,10 @@ TEST(SelfCheck, JudgesElementsInSixStatesAndTellsThePackage) {
     EXPECT_EQ(manifest.at("self_check").at("ratio"), check.at("ratio"));
     EXPECT_EQ(manifest.at("self_check").at("states"), check.at("states"));
     EXPECT_FALSE(manifest.at("self_check").contains("seconds"));
+    s.check_points = 0;
+    const kit::Bake unchecked(scene, s);
+    kit::check(ajar_job_write_package(unchecked.handle(), folder.path("unchecked").c_str(), nullptr));
+    EXPECT_EQ(kit::read_file(folder.path("package/terms.bin")), kit::read_file(folder.path("unchecked/terms.bin")));
 }
 
 TEST(SelfCheck, ABakeWithNoPlaceToLookAtIsKept) {

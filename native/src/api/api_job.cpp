@@ -266,7 +266,8 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
         if (j->settings().check_points != 0) content.self_check = check_json(j->output().check).dump();
         content.light_patches = static_cast<LightPatchPlanes>(j->settings().light_patches);
         content.overlap_pictures = j->settings().overlap_pictures != 0;
-        write_package(content, directory);
+        const std::optional<TermsFile>& terms_file = j->output().check.terms_file;
+        write_package(content, directory, terms_file ? &*terms_file : nullptr);
         return AJAR_OK;
     });
 }

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "api/stored_light.h"
+#include "package/package_writer.h"
 #include "reference/reference.h"
 
 namespace ajar {
@@ -72,8 +73,11 @@ struct Judge {
         return points;
     }
 
-    std::vector<StateCheck> judge() const {
-        StoredLight stored(package_content(scene, pages));
+    std::vector<StateCheck> judge(std::optional<TermsFile>& terms_file) const {
+        PackageContent content = package_content(scene, pages);
+        content.overlap_pictures = settings.overlap_pictures != 0;
+        terms_file = encode_terms(content);
+        StoredLight stored(content, terms_file ? &*terms_file : nullptr);
         const std::vector<CheckedState> states = states_to_check(scene.elements, settings.seed);
         const uint32_t count = points_of_state(settings.check_points, states.size());
         std::vector<std::vector<CheckPoint>> points;
@@ -151,7 +155,7 @@ SelfCheck check_bake(const Snapshot& scene, const Tracer& tracer, const Lightmap
     const double start = progress.elapsed();
     check.bounce_gain = largest_gain(bake.growth.steps);
     const Judge judge{scene, tracer, receivers, bake, pages, settings, pool, progress};
-    check.not_checked = why_not([&] { check.states = judge.judge(); });
+    check.not_checked = why_not([&] { check.states = judge.judge(check.terms_file); });
     check.seconds = progress.elapsed() - start;
     return check;
 }

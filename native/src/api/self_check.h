@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "accel/embree_scene.h"
 #include "api/check_states.h"
 #include "package/baked_pages.h"
+#include "package/terms_file.h"
 
 namespace ajar {
 
@@ -27,6 +29,7 @@ struct SelfCheck {
     BounceGain bounce_gain;  ///< the step from bounce to bounce that most surely grows; light that grows is wrong
     std::string not_checked; ///< why there are no states; empty: there are
     double seconds = 0.0;
+    std::optional<TermsFile> terms_file; ///< of the package, as it was checked; a scene without elements has none
 
     /// The state that is furthest out of bounds.
     const StateCheck& worst() const;

@@ -50,9 +50,9 @@ void require(ajar_runtime_result result) {
 } // namespace
 
 // The files are gone when this returns: the library has mapped or read what it needs.
-StoredLight::StoredLight(const PackageContent& content) {
+StoredLight::StoredLight(const PackageContent& content, const TermsFile* terms_file) {
     const ScratchFolder folder;
-    write_runtime_files(content, folder.path());
+    write_runtime_files(content, terms_file, folder.path());
     require(ajar_runtime_open(folder.path().c_str(), &runtime_));
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ajar_runtime.h"
-#include "package/manifest.h"
+#include "package/terms_file.h"
 
 namespace ajar {
 
@@ -12,9 +12,9 @@ namespace ajar {
 /// run-time library. What storage loses is lost here too.
 class StoredLight {
 public:
-    /// Throws Error: AJAR_ERROR_IO where there is no room for the files, AJAR_ERROR_INTERNAL for a package that the
-    /// run-time library refuses.
-    explicit StoredLight(const PackageContent& content);
+    /// terms_file: of a content with elements. Throws Error: AJAR_ERROR_IO where there is no room for the files,
+    /// AJAR_ERROR_INTERNAL for a package that the run-time library refuses.
+    StoredLight(const PackageContent& content, const TermsFile* terms_file);
     ~StoredLight();
     StoredLight(const StoredLight&) = delete;
     StoredLight& operator=(const StoredLight&) = delete;

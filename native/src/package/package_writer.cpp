@@ -2,7 +2,6 @@
 #include "package/package_writer.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "base/error.h"
 #include "package/dds.h"
@@ -10,7 +9,6 @@
 #include "package/image_io.h"
 #include "package/light_patches.h"
 #include "package/overlap_picture.h"
-#include "package/terms_file.h"
 #include "runtime/terms_format.h"
 
 namespace ajar {
@@ -51,16 +49,6 @@ std::vector<uint8_t> irradiance_dds(const PackagePage& page, float scale) {
 
 std::vector<uint8_t> direction_dds(const PackagePage& page) {
     return encode_dds(page.width, page.height, DdsFormat::kR8G8B8A8Unorm, page.packed_direction);
-}
-
-/// terms.bin, or nothing for a package without elements.
-std::optional<TermsFile> make_terms(const PackageContent& content) {
-    if (content.elements.empty() && content.terms.empty()) return std::nullopt;
-    std::vector<PageChecksums> sums;
-    for (const PackagePage& page : content.pages)
-        sums.push_back(
-            {terms::file_checksum(irradiance_dds(page, content.scale)), terms::file_checksum(direction_dds(page))});
-    return make_terms_file(content, sums);
 }
 
 void write_packed(const PackagePage& page, size_t index, float scale, const fs::path& folder, bool synced) {
@@ -160,23 +148,32 @@ void carry_over(const fs::path& existing, const fs::path& temporary) {
 
 } // namespace
 
-void write_runtime_files(const PackageContent& content, const fs::path& folder) {
+std::optional<TermsFile> encode_terms(const PackageContent& content) {
+    if (content.elements.empty() && content.terms.empty()) return std::nullopt;
+    std::vector<PageChecksums> sums;
+    for (const PackagePage& page : content.pages)
+        sums.push_back(
+            {terms::file_checksum(irradiance_dds(page, content.scale)), terms::file_checksum(direction_dds(page))});
+    return make_terms_file(content, sums);
+}
+
+void write_runtime_files(const PackageContent& content, const TermsFile* terms_file, const fs::path& folder) {
     for (size_t i = 0; i < content.pages.size(); ++i) {
         check_page(content.pages[i], i);
         write_packed(content.pages[i], i, content.scale, folder, false);
     }
-    if (const std::optional<TermsFile> terms = make_terms(content))
-        write_file(folder / terms::kFileName, terms->bytes, false);
+    if (terms_file != nullptr) write_file(folder / terms::kFileName, terms_file->bytes, false);
 }
 
-void write_package(const PackageContent& content, const fs::path& directory) {
+void write_package(const PackageContent& content, const fs::path& directory, const TermsFile* terms_file) {
     for (size_t i = 0; i < content.pages.size(); ++i) check_page(content.pages[i], i);
-    const std::optional<TermsFile> terms_file = make_terms(content);
-    const std::string manifest = manifest_json(content, terms_file ? &terms_file->summary : nullptr);
+    std::optional<TermsFile> made;
+    if (terms_file == nullptr && (made = encode_terms(content))) terms_file = &*made;
+    const std::string manifest = manifest_json(content, terms_file != nullptr ? &terms_file->summary : nullptr);
     const auto fill = [&](const fs::path& folder) {
         for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, content.scale, folder);
-        if (terms_file) write_file_synced(folder / terms::kFileName, terms_file->bytes);
-        if (terms_file && content.overlap_pictures) write_overlap(content, *terms_file, folder);
+        if (terms_file != nullptr) write_file_synced(folder / terms::kFileName, terms_file->bytes);
+        if (terms_file != nullptr && content.overlap_pictures) write_overlap(content, *terms_file, folder);
         if (content.light_patches != LightPatchPlanes::none) write_light_patches(content, folder);
         write_text(folder / kManifest, manifest);
     };
