@@ -72,7 +72,7 @@ public:
         const uint64_t h = (key_[0] ^ (key_[1] * 0xc2b2ae3d27d4eb4full)) * 0x9e3779b97f4a7c15ull;
         return static_cast<size_t>(h ^ (h >> 29));
     }
-    bool operator==(const Term&) const = default;
+    bool operator==(const Term& other) const { return key_[0] == other.key_[0] && key_[1] == other.key_[1]; }
     bool operator<(const Term& other) const { return key_ < other.key_; }
 
 private:
