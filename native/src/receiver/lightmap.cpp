@@ -26,6 +26,7 @@ constexpr uint32_t kPositionSalt = 0xa11ce5u;
 /// below it. At this angle, 0.26 degrees, 5e-6 of an even light comes from there.
 constexpr float kLean = 0.99999f;
 constexpr float kOverlapArea = 1.1f; ///< more triangle area than a texel has means overlapping UVs
+constexpr float kFullArea = 0.9999f; ///< texels: a fragment that covers all of its texel
 
 uint32_t part_bits(uint32_t v) { // spreads 4 bits for a Morton code
     v = (v | (v << 2)) & 0x33;
@@ -174,6 +175,7 @@ TexelPoint Builder::point(uint32_t receiver, Vec2 u) const {
     const Fragment& f = coverage.fragments[i];
     u.x = std::min(left / f.area, 0x1.fffffep-1f);
     const Vec2 low = texel_corner(f);
+    if (!f.ring && f.area > kFullArea) return on_triangle(f.triangle, low + u);
     const float margin = f.ring ? 0.5f : 0.0f;
     return on_triangle(f.triangle,
                        clip_to_box(texel_triangle(scene, f.triangle), low - margin, low + 1.0f + margin).sample(u));
@@ -381,7 +383,7 @@ void Builder::set_frame(uint32_t r) {
     float covered = 0.0f;
     for (uint32_t i = begin; i < end; ++i) covered += coverage.fragments[i].ring ? 0.0f : coverage.fragments[i].area;
     out.whole[r] = std::abs(covered - 1.0f) <= 1e-3f;
-    out.full[r] = end - begin == 1 && !coverage.fragments[begin].ring && coverage.fragments[begin].area > 0.9999f;
+    out.full[r] = end - begin == 1 && !coverage.fragments[begin].ring && coverage.fragments[begin].area > kFullArea;
 }
 
 void Builder::set_albedo(uint32_t r) {
