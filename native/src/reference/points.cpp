@@ -148,10 +148,13 @@ PointChooser::View PointChooser::view_from(const Place& p) const {
 bool PointChooser::is_buried(const Place& p) const {
     const View view = view_from(p);
     const float near = kNearBack * texel_edge(world_.scene, p.triangle);
-    int backs = 0, inside = 0;
+    int backs = 0, inside = 0, others = 0;
     for (const Vec3& w : {Vec3(0.1f, 0.2f, 0.97f), Vec3(0.6f, -0.5f, 0.62f), Vec3(-0.7f, 0.3f, 0.65f)}) {
         const Hit hit = world_.meet(view.along(glm::normalize(w)), view.state);
-        if (hit.triangle == kMiss || !hit.back) continue;
+        if (hit.triangle == kMiss || !hit.back) {
+            if (++others == 2) return false;
+            continue;
+        }
         backs += hit.t < near;
         inside += world_.is_inside(hit);
     }
