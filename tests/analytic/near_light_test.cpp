@@ -47,6 +47,45 @@ TEST(NearLight, SmallAreaLampsKeepTheirFlux) {
     }
 }
 
+TEST(NearLight, LampsWiderThanATexelKeepTheirFlux) {
+    for (const double height : {0.03, 0.003}) {
+        ajar_light_desc d = lamp(AJAR_LIGHT_AREA_RECTANGLE, 100.0f);
+        d.size_x = d.size_y = 0.2f;
+        EXPECT_NEAR(flux_below(d, height, 32) / (25.0 * pi), 1.0, 0.02) << height;
+        d.type = AJAR_LIGHT_AREA_ELLIPSE;
+        EXPECT_NEAR(flux_below(d, height, 32) / (25.0 * pi), 1.0, 0.02) << height;
+    }
+}
+
+/// Flux on a disk of the floor's area below a point lamp of intensity 1: the lamp is a disk that faces each point, the
+/// part of it below the floor's plane does not count.
+double flux_below_ball(double radius, double height) {
+    constexpr int kSteps = 400, kRings = 60, kTurns = 60;
+    const double outer = 2.0 / std::sqrt(pi), first = std::asinh(outer / height) / kSteps;
+    double flux = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = (i + 0.5) * first, out = height * std::sinh(t), width = height * std::cosh(t) * first;
+        const double far = std::hypot(out, height), up = height / far, rim = far / std::hypot(far, radius);
+        double mean = 0.0; // of the cosine over the solid angle of the lamp
+        for (int k = 0; k < kRings * kTurns; ++k) {
+            const double z = 1.0 - (k / kTurns + 0.5) / kRings * (1.0 - rim), angle = 2.0 * pi * (k % kTurns) / kTurns;
+            mean += std::max(0.0, z * up + std::sqrt(1.0 - z * z) * std::cos(angle) * out / far) / (kRings * kTurns);
+        }
+        flux += 2.0 * pi * out * width * mean * 2.0 * (1.0 - rim) / (radius * radius);
+    }
+    return flux;
+}
+
+TEST(NearLight, PointLampsOfSomeSizeKeepTheirFlux) {
+    for (const double height : {0.1, 0.01, 0.001}) {
+        ajar_light_desc d = lamp(AJAR_LIGHT_POINT, 100.0f);
+        d.radius = 0.01f;
+        double mean = 0.0;
+        for (uint32_t seed = 0; seed < 4; ++seed) mean += 0.25 * flux_below(d, height, 128, seed);
+        EXPECT_NEAR(mean / (flux_below_ball(0.01, height) * 25.0 / pi), 1.0, 0.03) << height;
+    }
+}
+
 TEST(NearLight, NarrowBeamsKeepTheirFlux) {
     for (const float spread : {0.3f, 0.03f, 0.0f}) {
         ajar_light_desc d = lamp(AJAR_LIGHT_AREA_RECTANGLE, 100.0f);

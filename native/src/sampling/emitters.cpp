@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "sampling/warp.h"
+#include "sampling/wide_lamp.h"
 
 namespace ajar {
 
@@ -190,6 +191,12 @@ EmitterSample EmitterSet::sample(uint32_t e, const Vec3& p, const Vec2& u) const
             light.casts_shadow,
             light.type == Light::Type::point || light.type == Light::Type::spot,
             light.area > 0.0f && light.spread_tan == 0.0f ? light.axis : Vec3(0.0f)};
+}
+
+EmitterSample EmitterSet::sample_wide(uint32_t e, const Vec3& p, const Vec2& u) const {
+    const Light& light = scene_.lights[emitters_[e].index];
+    const LightSample s = sample_wide_lamp(light, p, u);
+    return {s.direction, s.distance, p + s.direction * s.distance, s.weight, 0.0f, light.casts_shadow};
 }
 
 EmitterSample EmitterSet::sample_cluster(const Cluster& c, const Vec3& p, Vec2 u) const {

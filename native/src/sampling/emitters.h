@@ -84,6 +84,8 @@ public:
     /// in which a narrow lamp counts too.
     float importance(uint32_t e, const Vec3& p, const Vec3& n, float reach = 0.0f) const;
     EmitterSample sample(uint32_t e, const Vec3& p, const Vec2& u) const;
+    /// The same for a lamp that is_wide_lamp() near p.
+    EmitterSample sample_wide(uint32_t e, const Vec3& p, const Vec2& u) const;
     /// Asks for the memory that sample(e, p, u) will read, to do other work while it comes.
     [[gnu::always_inline]] void prefetch(uint32_t e, const Vec2& u) const {
         if (emitters_[e].kind != Kind::cluster) return;

@@ -32,9 +32,9 @@ Cone cone_above(const Light& l, const Vec3& p, float reach) {
     const Vec3 from = p - l.position;
     c.height = glm::dot(from, l.axis);
     // A sheared lamp shines at an angle to its plane; it is sampled whole.
+    if (l.spread_tan == 0.0f) return c;
     const float tilt = std::abs(glm::dot(l.edge_x, l.axis)) + std::abs(glm::dot(l.edge_y, l.axis));
-    if (l.spread_tan == 0.0f || !(l.area > 0.0f) || tilt > 1e-4f * (glm::length(l.edge_x) + glm::length(l.edge_y)))
-        return c;
+    if (!(l.area > 0.0f) || tilt > 1e-4f * (glm::length(l.edge_x) + glm::length(l.edge_y))) return c;
     const Vec3 across_x = glm::cross(l.edge_y, l.axis), across_y = glm::cross(l.edge_x, l.axis);
     c.dual_x = across_x / glm::dot(across_x, l.edge_x);
     c.dual_y = across_y / glm::dot(across_y, l.edge_y);
@@ -115,7 +115,8 @@ float area_lamp_importance(const Light& l, const Vec3& p, const Vec3& n, float r
     if (c.empty()) return 0.0f;
     const Vec2 middle = 0.5f * (c.low + c.high), size = c.size();
     const Vec3 to_light = l.position + middle.x * l.edge_x + middle.y * l.edge_y - p;
-    const float extent = 0.5f * (size.x * glm::length(l.edge_x) + size.y * glm::length(l.edge_y)) + reach;
+    const float extent =
+        reach + (c.whole ? l.extent : 0.5f * (size.x * glm::length(l.edge_x) + size.y * glm::length(l.edge_y)));
     const float distance2 = glm::dot(to_light, to_light), distance = std::max(std::sqrt(distance2), 1e-6f);
     const float cosine = std::min(1.0f, (glm::dot(to_light, n) + extent) / distance);
     const float emitter_cosine = std::min(1.0f, (-glm::dot(to_light, l.axis) + extent) / distance);

@@ -33,20 +33,21 @@ LightSample sample_sun(const Light& l, const Vec2& u) {
     return {-glm::normalize(l.axis + d.x * frame.x + d.y * frame.y), kInfinity, l.intensity};
 }
 
-// Cycles shows a point lamp as a disk that faces each receiver; so does this.
+// Cycles shows a point lamp as a disk that faces each receiver; so does this. The disk is sampled by solid angle: next
+// to a lamp most of its light comes from the little part that is nearest.
 LightSample sample_ball(const Light& l, const Vec3& p, const Vec2& u) {
     const Vec3 to_center = l.position - p;
     const float distance2 = glm::dot(to_center, to_center);
     if (!(distance2 > 0.0f)) return {};
-    const Vec2 d = l.radius > 0.0f ? square_to_disk(u) * l.radius : Vec2(0.0f);
-    const float center_distance = std::sqrt(distance2);
+    const float center_distance = std::sqrt(distance2), square = l.radius * l.radius;
+    const Vec2 d = l.radius > 0.0f ? square_to_disk(u) : Vec2(0.0f);
+    // 1 - cosine of the disk's rim, and its ratio to radius^2: solid angle over pi radius^2, halved.
+    const float rim = std::sqrt(distance2 + square), ratio = 1.0f / (rim * (rim + center_distance));
+    const float below = glm::dot(d, d) * square * ratio, beside = l.radius * std::sqrt(ratio * (2.0f - below));
     const Frame frame = frame_from_normal(to_center / center_distance);
-    const Vec3 offset = to_center + d.x * frame.x + d.y * frame.y;
-    const float length2 = glm::dot(offset, offset), length = std::sqrt(length2);
-    const float cosine = center_distance / length;
-    const float cone = l.type == Light::Type::spot ? spot_factor(l, -offset / length) : 1.0f;
-    const float facing = l.radius > 0.0f ? cosine : 1.0f;
-    return {offset / length, length, l.intensity * (cone * facing / length2)};
+    const Vec3 w = (1.0f - below) * frame.z + beside * (d.x * frame.x + d.y * frame.y);
+    const float cone = l.type == Light::Type::spot ? spot_factor(l, -w) : 1.0f;
+    return {w, center_distance / (1.0f - below), l.intensity * (2.0f * cone * ratio)};
 }
 
 void set_spot(Light& l, const ajar_light_desc& d) {
@@ -57,6 +58,7 @@ void set_spot(Light& l, const ajar_light_desc& d) {
 void set_area(Light& l, const ajar_light_desc& d, const Affine& m) {
     l.edge_x = Vec3(m.column(0)) * std::abs(d.size_x);
     l.edge_y = Vec3(m.column(1)) * std::abs(d.size_y);
+    l.extent = 0.5f * (glm::length(l.edge_x) + glm::length(l.edge_y));
     l.area = glm::length(glm::cross(l.edge_x, l.edge_y)) * (l.type == Light::Type::ellipse ? 0.25f * kPi : 1.0f);
     l.intensity = l.area > 0.0f ? l.intensity / (4.0f * l.area) : Vec3(0.0f);
     const float half = 0.5f * d.spread;
@@ -129,7 +131,7 @@ Light make_light(const ajar_light_desc& d, const std::string& name, const Affine
             set_spot(l, d);
             [[fallthrough]];
         case Light::Type::point:
-            l.radius = std::max(d.radius, 0.0f);
+            l.radius = l.extent = std::max(d.radius, 0.0f);
             l.intensity *= 0.25f * kInvPi;
             break;
         case Light::Type::sun:

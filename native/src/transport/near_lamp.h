@@ -3,6 +3,8 @@
 
 #include "receiver/lightmap.h"
 #include "sampling/emitters.h"
+#include "sampling/spherical_rectangle.h"
+#include "sampling/wide_lamp.h"
 
 namespace ajar {
 
@@ -45,15 +47,66 @@ inline float rectangle_irradiance(const Vec3 (&corner)[4], const Vec3& n) {
     return 0.5f * std::abs(sum);
 }
 
+constexpr float kNearCells = 3.0f; ///< edges of a position's part of a texel: nearer lamps change much across it
+constexpr float kWideCells = 4.0f; ///< edges: larger area lamps are sampled by solid angle, smaller ones by area
+
+constexpr float kSmallLamp = 0.25f; ///< heights: a smaller radius of a point lamp does not matter below it
+
 /// Edge of the part of a texel that each position stands for, m.
 inline float cell_edge(const LightmapReceivers& receivers, uint32_t r) {
     return receivers.texel_size[r] / std::sqrt(static_cast<float>(receivers.positions_per_texel));
 }
 
+/// Where a sample to a lamp close to an open texel starts, in the part of it that a position stands for.
+struct LampStart {
+    Vec3 point{0.0f};
+    float weight = 1.0f; ///< 1 over the density of the point, over that of an even choice
+    bool near = false;   ///< else the lamp is too far to matter
+    bool wide = false;   ///< the lamp is_wide_lamp()
+};
+
+/// A start by the light of a point lamp, which falls with the cube of the distance: even over the solid angle that the
+/// part fills as seen from the lamp, or from its radius above its foot, under which the light changes little.
+inline LampStart start_below_point_lamp(const LightmapReceivers& receivers, uint32_t r, uint32_t position,
+                                        const Light& lamp, const Vec2& u) {
+    constexpr float kSquare = 0.02f; // cosine between edges
+    const Vec3* o = receivers.origins(r);
+    const Vec3 x = o[1] - o[0], y = o[grid_columns(receivers.positions_per_texel)] - o[0], across = glm::cross(x, y);
+    const float area = glm::length(across);
+    if (!(area > 0.0f) || std::abs(glm::dot(x, y)) > kSquare * area) return {};
+    const Vec3 n = across / area, corner = o[position] - 0.5f * (x + y);
+    const float over = glm::dot(lamp.position - corner, n), height = std::max(std::abs(over), lamp.radius);
+    if (lamp.radius < kSmallLamp * height) return {};
+    const Vec3 from = lamp.position + n * (height - over);
+    const SphericalRectangle part(DVec3(corner - from), DVec3(x), DVec3(y));
+    if (!(part.solid_angle() > 0.0)) return {};
+    const DVec3 offset = part.sample(u);
+    const double distance = glm::length(offset);
+    const double weight = part.solid_angle() * distance * distance * distance / (double(height) * area);
+    return {from + Vec3(offset), static_cast<float>(weight), true, false};
+}
+
+/// Whether a lamp may be near_lamp_factor()'s business at a position p.
+inline bool is_close(const LightmapReceivers& receivers, uint32_t r, const Vec3& p, const Light& lamp) {
+    const Vec3 to = lamp.position - p;
+    const float most = kNearCells * cell_edge(receivers, r) + lamp.extent;
+    return glm::dot(to, to) < most * most && lamp.type != Light::Type::sun;
+}
+
+/// The start of a sample to a lamp that is_close() to an open texel; p: the position.
+inline LampStart lamp_start(const LightmapReceivers& receivers, uint32_t r, uint32_t position, const Vec3& p,
+                            const Light& lamp, const Vec2& u) {
+    if (lamp.type == Light::Type::point || lamp.type == Light::Type::spot)
+        return start_below_point_lamp(receivers, r, position, lamp, u);
+    const float cell = cell_edge(receivers, r);
+    if (!is_wide_lamp(lamp, p, kWideCells * cell, kNearCells * cell)) return {};
+    return {receivers.in_cell(r, position, u), 1.0f, true, true};
+}
+
 /// Whether a lamp is so close to a texel that its irradiance varies too steeply for the texel's few positions.
 inline bool is_near_lamp(const LightmapReceivers& receivers, uint32_t r, const EmitterSample& s) {
     return (s.point_like || s.lobe != Vec3(0.0f)) && receivers.whole[r] != 0 && receivers.cut[r] == 0 &&
-           s.distance < 3.0f * cell_edge(receivers, r) && s.distance > 0.0f;
+           s.distance < kNearCells * cell_edge(receivers, r) && s.distance > 0.0f;
 }
 
 /// The mean of a near lamp's light over the cell of a position p, over the value at the position; 1 for other emitters.
