@@ -259,13 +259,11 @@ AJAR_API ajar_result ajar_job_write_package(ajar_job job, const char* directory,
     return guarded([&] {
         const auto j = jobs().get(job);
         if (directory == nullptr || *directory == 0) throw Error(AJAR_ERROR_ARGUMENT, "the package needs a directory");
-        PackageContent content = package_content(j->scene(), j->output().pages);
+        PackageContent content = package_content(j->scene(), j->output().pages, j->settings());
         if (extras != nullptr)
             content.extras =
                 *extras != 0 ? extras : throw Error(AJAR_ERROR_ARGUMENT, "the package's extras are not a JSON object");
         if (j->settings().check_points != 0) content.self_check = check_json(j->output().check).dump();
-        content.light_patches = static_cast<LightPatchPlanes>(j->settings().light_patches);
-        content.overlap_pictures = j->settings().overlap_pictures != 0;
         const std::optional<TermsFile>& terms_file = j->output().check.terms_file;
         write_package(content, directory, terms_file ? &*terms_file : nullptr);
         return AJAR_OK;

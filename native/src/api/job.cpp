@@ -89,7 +89,7 @@ void Job::bake(Progress& progress) {
     output_.pages = make_pages(scene, output_.receivers, output_.bake, settings_, pool, progress);
     std::vector<std::vector<uint32_t>> products;
     for (const BakedTerm& t : output_.pages.terms) products.push_back(t.elements);
-    output_.weight_terms = in_weights(package_content(scene, output_.pages).elements, products);
+    output_.weight_terms = in_weights(package_content(scene, output_.pages, settings_).elements, products);
     for (Warning& w : cut_warnings(scene, output_.bake.terms.cut, settings_.combinations))
         output_.warnings.push_back(std::move(w));
     for (const Warning& w : output_.pages.warnings) output_.warnings.push_back(w);

@@ -74,8 +74,7 @@ struct Judge {
     }
 
     std::vector<StateCheck> judge(std::optional<TermsFile>& terms_file) const {
-        PackageContent content = package_content(scene, pages);
-        content.overlap_pictures = settings.overlap_pictures != 0;
+        const PackageContent content = package_content(scene, pages, settings);
         terms_file = encode_terms(content);
         StoredLight stored(content, terms_file ? &*terms_file : nullptr);
         const std::vector<CheckedState> states = states_to_check(scene.elements, settings.seed);

@@ -138,7 +138,7 @@ BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers,
     return std::move(a.out);
 }
 
-PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
+PackageContent package_content(const Snapshot& scene, const BakedPages& baked, const ajar_settings& settings) {
     PackageContent c;
     c.name = scene.name;
     c.scale = baked.scale;
@@ -176,6 +176,8 @@ PackageContent package_content(const Snapshot& scene, const BakedPages& baked) {
                            {t.irradiance.empty() ? nullptr : &t.irradiance[0].x, 3 * t.irradiance.size()},
                            t.packed_direction});
     c.discarded = baked.discarded;
+    c.light_patches = static_cast<LightPatchPlanes>(settings.light_patches);
+    c.overlap_pictures = settings.overlap_pictures != 0;
     return c;
 }
 

@@ -38,7 +38,7 @@ struct BakedPages {
 BakedPages make_pages(const Snapshot& scene, const LightmapReceivers& receivers, const BakeResult& result,
                       const ajar_settings& settings, ThreadPool& pool, Progress& progress);
 
-/// View of the pages for the package writer; baked must outlive it.
-PackageContent package_content(const Snapshot& scene, const BakedPages& baked);
+/// View of the pages for the package writer, with what the settings ask for beside them; baked must outlive it.
+PackageContent package_content(const Snapshot& scene, const BakedPages& baked, const ajar_settings& settings);
 
 } // namespace ajar

@@ -168,7 +168,8 @@ void write_runtime_files(const PackageContent& content, const TermsFile* terms_f
 void write_package(const PackageContent& content, const fs::path& directory, const TermsFile* terms_file) {
     for (size_t i = 0; i < content.pages.size(); ++i) check_page(content.pages[i], i);
     std::optional<TermsFile> made;
-    if (terms_file == nullptr && (made = encode_terms(content))) terms_file = &*made;
+    if (terms_file == nullptr) made = encode_terms(content);
+    if (made) terms_file = &*made;
     const std::string manifest = manifest_json(content, terms_file != nullptr ? &terms_file->summary : nullptr);
     const auto fill = [&](const fs::path& folder) {
         for (size_t i = 0; i < content.pages.size(); ++i) write_page(content.pages[i], i, content.scale, folder);

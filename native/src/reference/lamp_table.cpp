@@ -18,7 +18,7 @@ void LampTable::add(uint32_t number, const Light& l, float weight) {
                sun = l.type == Light::Type::sun;
     choices_.push_back({number, weight, 1.0f});
     strength_.push_back(weight * luminance(l.intensity) * (area ? l.area : 1.0f));
-    extent_.push_back(area ? 0.5f * (glm::length(l.edge_x) + glm::length(l.edge_y)) : l.radius);
+    extent_.push_back(sun ? l.radius : l.extent);
     const Vec3 at = sun ? -l.axis : l.position;
     x_.push_back(at.x), y_.push_back(at.y), z_.push_back(at.z);
     is_sun_.push_back(sun ? 1.0f : 0.0f);

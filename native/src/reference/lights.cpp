@@ -31,9 +31,10 @@ Lights::Lights(const World& world, const std::vector<float>& weights) : world_(w
     const auto weight = [&](uint32_t set) { return set == kNoElement ? 1.0f : weights[set]; };
     for (uint32_t i = 0; i < s.lights.size(); ++i) {
         const Light& l = s.lights[i];
-        if (l.dark() || !(weight(l.light_set) > 0.0f)) continue;
-        lamps_.add(i, l, weight(l.light_set));
-        if (!l.primary) static_lamps_.add(i, l, weight(l.light_set));
+        const float set = weight(l.light_set);
+        if (l.dark() || !(set > 0.0f)) continue;
+        lamps_.add(i, l, set);
+        if (!l.primary) static_lamps_.add(i, l, set);
     }
     double total = 0.0;
     for (uint32_t t = 0; t < s.triangles.size(); ++t) {

@@ -152,7 +152,7 @@ bool PointChooser::is_buried(const Place& p) const {
     for (const Vec3& w : {Vec3(0.1f, 0.2f, 0.97f), Vec3(0.6f, -0.5f, 0.62f), Vec3(-0.7f, 0.3f, 0.65f)}) {
         const Hit hit = world_.meet(view.along(glm::normalize(w)), view.state);
         if (hit.triangle == kMiss || !hit.back) {
-            if (++others == 2) return false;
+            if (++others == 2) return false; // the third way cannot change the answer
             continue;
         }
         backs += hit.t < near;

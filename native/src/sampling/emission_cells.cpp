@@ -119,7 +119,7 @@ Vec2 EmissionCells::sample(uint32_t triangle, Vec2 u, float& density) const {
     const Part& part = part_of(grid, u.x);
     uint32_t cell = part.cell;
     float begin = part.begin, end = part.middle;
-    if (u.x >= end && cell + 1 < count) {
+    if (u.x >= end && cell + 1 < count) { // the next cell's end stands in the part too
         ++cell;
         begin = end;
         end = part.end;

@@ -34,8 +34,10 @@ LightSample sample_wide_lamp(const Light& l, const Vec3& p, const Vec2& u) {
                                   DVec3(l.edge_y));
     if (!(seen.solid_angle() > 0.0)) return {};
     const Vec3 offset(seen.sample(u));
-    const Vec2 at = on_lamp(l, p + offset);
-    if (l.type == Light::Type::ellipse && glm::dot(at, at) > 0.25f) return {};
+    if (l.type == Light::Type::ellipse) {
+        const Vec2 at = on_lamp(l, p + offset);
+        if (glm::dot(at, at) > 0.25f) return {};
+    }
     const float distance = glm::length(offset);
     return {offset / distance, distance, l.intensity * static_cast<float>(seen.solid_angle())};
 }

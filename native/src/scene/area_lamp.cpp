@@ -31,8 +31,8 @@ Cone cone_above(const Light& l, const Vec3& p, float reach) {
     Cone c;
     const Vec3 from = p - l.position;
     c.height = glm::dot(from, l.axis);
-    // A sheared lamp shines at an angle to its plane; it is sampled whole.
     if (l.spread_tan == 0.0f) return c;
+    // A sheared lamp shines at an angle to its plane; it is sampled whole.
     const float tilt = std::abs(glm::dot(l.edge_x, l.axis)) + std::abs(glm::dot(l.edge_y, l.axis));
     if (!(l.area > 0.0f) || tilt > 1e-4f * (glm::length(l.edge_x) + glm::length(l.edge_y))) return c;
     const Vec3 across_x = glm::cross(l.edge_y, l.axis), across_y = glm::cross(l.edge_x, l.axis);

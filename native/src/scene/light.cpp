@@ -41,13 +41,15 @@ LightSample sample_ball(const Light& l, const Vec3& p, const Vec2& u) {
     if (!(distance2 > 0.0f)) return {};
     const float center_distance = std::sqrt(distance2), square = l.radius * l.radius;
     const Vec2 d = l.radius > 0.0f ? square_to_disk(u) : Vec2(0.0f);
-    // 1 - cosine of the disk's rim, and its ratio to radius^2: solid angle over pi radius^2, halved.
+    // ratio = (1 - cosine to the disk's rim) / radius^2. The disk's solid angle is 2 pi radius^2 ratio, its radiance
+    // intensity / (pi radius^2); the product has a limit at radius 0.
     const float rim = std::sqrt(distance2 + square), ratio = 1.0f / (rim * (rim + center_distance));
-    const float below = glm::dot(d, d) * square * ratio, beside = l.radius * std::sqrt(ratio * (2.0f - below));
+    const float versine = glm::dot(d, d) * square * ratio;             // 1 - cosine to the point
+    const float sine = l.radius * std::sqrt(ratio * (2.0f - versine)); // over |d|
     const Frame frame = frame_from_normal(to_center / center_distance);
-    const Vec3 w = (1.0f - below) * frame.z + beside * (d.x * frame.x + d.y * frame.y);
+    const Vec3 w = (1.0f - versine) * frame.z + sine * (d.x * frame.x + d.y * frame.y);
     const float cone = l.type == Light::Type::spot ? spot_factor(l, -w) : 1.0f;
-    return {w, center_distance / (1.0f - below), l.intensity * (2.0f * cone * ratio)};
+    return {w, center_distance / (1.0f - versine), l.intensity * (2.0f * cone * ratio)};
 }
 
 void set_spot(Light& l, const ajar_light_desc& d) {

@@ -34,7 +34,7 @@ struct Light {
     float cone_cos = -1.0f, cone_smooth = 0.0f;   ///< spot: Blender's cone
     float spread_tan = 0.0f, spread_scale = 1.0f; ///< area: 0 = Lambertian
     float area = 0.0f;                            ///< m^2
-    float extent = 0.0f;                          ///< m, from the position to the lamp's furthest point; not of suns
+    float extent = 0.0f; ///< m, half its edges or its radius: no point is further from the position; 0 for suns
 
     /// Samples the lamp from p with two numbers in [0,1).
     LightSample sample(const Vec3& p, const Vec2& u) const;

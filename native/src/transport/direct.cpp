@@ -72,8 +72,8 @@ struct DirectSampler {
     Pick pick(uint32_t local, uint32_t sample, uint32_t samples) const;
     bool prepare(uint32_t local, uint32_t sample, uint32_t samples, const Pick& picked, ShadowPacket& packet,
                  uint32_t lane) const;
-    EmitterSample sample_from(uint32_t r, uint32_t position, const Vec3& p, uint32_t emitter, const Vec2& u,
-                              const Vec2& place, uint32_t samples, Vec3& start, float& factor) const;
+    EmitterSample sample_from(uint32_t r, uint32_t position, const Vec3& p, const Pick& picked, const Vec2& place,
+                              uint32_t samples, LampStart& start) const;
     bool start_at(uint32_t receiver, uint32_t position, ShadowPacket& packet, uint32_t lane, Vec3& p) const;
     void trace(ShadowPacket& packet, uint32_t first, uint32_t sample, uint32_t samples, uint32_t number);
     void finish(ShadowPacket& packet, uint32_t first, uint32_t number);
@@ -108,28 +108,25 @@ Pick DirectSampler<Sink>::pick(uint32_t local, uint32_t sample, uint32_t samples
     return {emitter, chance, place, spread.y};
 }
 
-/// A sample of an emitter and where on the position's part of the texel its ray starts; factor: of its weight.
+/// A sample of the picked emitter; start: of its ray, on the position's part of the texel, and a factor of its weight.
 template <class Sink>
-EmitterSample DirectSampler<Sink>::sample_from(uint32_t r, uint32_t position, const Vec3& p, uint32_t emitter,
-                                               const Vec2& u, const Vec2& place, uint32_t samples, Vec3& start,
-                                               float& factor) const {
-    const bool open = g.receivers.open[r] != 0,
-               in_cell = open && samples >= kCellSamples * g.receivers.positions_per_texel;
+EmitterSample DirectSampler<Sink>::sample_from(uint32_t r, uint32_t position, const Vec3& p, const Pick& picked,
+                                               const Vec2& place, uint32_t samples, LampStart& start) const {
+    const uint32_t emitter = picked.emitter;
     const Light* lamp = g.emitters.lamp(emitter);
-    const bool close = lamp != nullptr && is_close(g.receivers, r, p, *lamp);
-    if (close && open) {
-        const LampStart near = lamp_start(g.receivers, r, position, p, *lamp, place);
-        start = near.point, factor = near.weight;
-        if (near.wide) return g.emitters.sample_wide(emitter, start, u);
-        if (near.near) return g.emitters.sample(emitter, start, u);
+    const bool open = g.receivers.open[r] != 0, close = lamp != nullptr && is_close(g.receivers, r, p, *lamp);
+    if (open && close) {
+        start = lamp_start(g.receivers, r, position, p, *lamp, place);
+        if (start.wide) return g.emitters.sample_wide(emitter, start.point, picked.u);
+        if (start.near) return g.emitters.sample(emitter, start.point, picked.u);
     }
-    start = in_cell ? g.receivers.in_cell(r, position, place) : p;
-    factor = 1.0f;
-    EmitterSample s = g.emitters.sample(emitter, g.emitters.is_narrow(emitter) ? start : p, u);
-    if (close && is_near_lamp(g.receivers, r, s)) {
-        s = g.emitters.sample(emitter, p, u);
-        factor = near_lamp_factor(g.receivers, r, position, p, s);
-    }
+    const bool in_cell = open && samples >= kCellSamples * g.receivers.positions_per_texel;
+    start = {in_cell ? g.receivers.in_cell(r, position, place) : p};
+    const bool narrow = g.emitters.is_narrow(emitter);
+    EmitterSample s = g.emitters.sample(emitter, narrow ? start.point : p, picked.u);
+    if (!close || !is_near_lamp(g.receivers, r, s)) return s;
+    if (narrow) s = g.emitters.sample(emitter, p, picked.u);
+    start.weight = near_lamp_factor(g.receivers, r, position, p, s);
     return s;
 }
 
@@ -145,23 +142,22 @@ bool DirectSampler<Sink>::prepare(uint32_t local, uint32_t sample, uint32_t samp
     Vec3 p;
     if (!start_at(r, position, packet, lane, p)) return false;
     const Vec2 place = place_in_cell(sample, h, picked.spread, positions);
-    Vec3 start;
-    float factor;
-    EmitterSample s = sample_from(r, position, p, emitter, picked.u, place, samples, start, factor);
+    LampStart start;
+    EmitterSample s = sample_from(r, position, p, picked, place, samples, start);
     const Vec3 w = g.receivers.frame[r].to_local(s.direction);
     if (!(w.z > 0.0f) || !(max_component(s.weight) > 0.0f) || !g.receivers.is_above(r, position, s.direction))
         return false;
     const float own = static_cast<float>(samples) * s.pdf * picked.chance;
     float rays = mis.gather * hemisphere_pdf(w.z, mis.share); // per steradian
     if (mis.aims != nullptr) rays += mis.aims->density(local, position, s.direction);
-    const float weight = s.pdf > 0.0f ? own / (own + rays) : factor;
+    const float weight = s.pdf > 0.0f ? own / (own + rays) : start.weight;
     packet.scale[lane] = weight / picked.chance;
     packet.emitter[lane] = emitter;
     packet.local.set(lane, w, packet.book_scale);
     packet.lit[lane] = !s.casts_shadow;
-    if (start != p) s.see_from(start);
+    if (start.point != p) s.see_from(start.point);
     packet.sample[lane] = s;
-    packet.rays.set(lane, start, s.direction, shadow_end(g.tracer, s));
+    packet.rays.set(lane, start.point, s.direction, shadow_end(g.tracer, s));
     return is_finite(s.weight * packet.scale[lane]);
 }
 

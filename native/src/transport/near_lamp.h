@@ -48,9 +48,12 @@ inline float rectangle_irradiance(const Vec3 (&corner)[4], const Vec3& n) {
 }
 
 constexpr float kNearCells = 3.0f; ///< edges of a position's part of a texel: nearer lamps change much across it
-constexpr float kWideCells = 4.0f; ///< edges: larger area lamps are sampled by solid angle, smaller ones by area
-
-constexpr float kSmallLamp = 0.25f; ///< heights: a smaller radius of a point lamp does not matter below it
+/// Edges: larger area lamps are sampled by solid angle, smaller ones by area. Noise of the flux below a lamp 3 mm over
+/// a floor, by solid angle for by area: .071 for .024 at 1 edge, .010 for .169 at 4.
+constexpr float kWideCells = 4.0f;
+/// Heights of a point lamp: from this radius on samples start by its light. With near_lamp_factor() instead, the flux
+/// below it is 1.3 % too much at a radius of half the height, .1 % at .3.
+constexpr float kSmallLamp = 0.25f;
 
 /// Edge of the part of a texel that each position stands for, m.
 inline float cell_edge(const LightmapReceivers& receivers, uint32_t r) {
@@ -60,8 +63,8 @@ inline float cell_edge(const LightmapReceivers& receivers, uint32_t r) {
 /// Where a sample to a lamp close to an open texel starts, in the part of it that a position stands for.
 struct LampStart {
     Vec3 point{0.0f};
-    float weight = 1.0f; ///< 1 over the density of the point, over that of an even choice
-    bool near = false;   ///< else the lamp is too far to matter
+    float weight = 1.0f; ///< of the sample, for how the point was chosen or what it stands for
+    bool near = false;   ///< the point was chosen by the lamp
     bool wide = false;   ///< the lamp is_wide_lamp()
 };
 
@@ -86,7 +89,7 @@ inline LampStart start_below_point_lamp(const LightmapReceivers& receivers, uint
     return {from + Vec3(offset), static_cast<float>(weight), true, false};
 }
 
-/// Whether a lamp may be near_lamp_factor()'s business at a position p.
+/// Whether a lamp's light may change much across the part of the texel about a position p.
 inline bool is_close(const LightmapReceivers& receivers, uint32_t r, const Vec3& p, const Light& lamp) {
     const Vec3 to = lamp.position - p;
     const float most = kNearCells * cell_edge(receivers, r) + lamp.extent;
