@@ -45,25 +45,26 @@ struct alignas(32) Directions {
 
 Lanes all(float v) { return v - Lanes{}; }
 
-/// Ambient part and squared error of the best fit for each direction; total = luminance of E_z.
+/// Ambient part of the best fit for each direction, and its squared error less that of no highlight.
 struct alignas(32) Fits {
     float ambient[kLanes], cost[kLanes];
 };
 
-Fits fit_ambient(const std::array<float, kNormals>& e, float total, const Directions& d) {
-    const Lanes x = lanes(d.x), y = lanes(d.y), z = lanes(d.z), none{};
-    Lanes gg{}, gh{}, hh{};
+/// total = luminance of E_z; gap[k] = total - E of normal k. With a highlight of strength b, a normal on which it is
+/// 1 - g as strong as along z is off by b g - gap.
+Fits fit_ambient(const std::array<float, kNormals>& gap, float total, const Directions& d) {
+    const Lanes x = lanes(d.x), y = lanes(d.y), z = lanes(d.z), per_z = 1.0f / z, none{};
+    Lanes gg{}, g_gap{};
     for (int k = 0; k < kNormals; ++k) {
         const Vec3& n = kFitNormals[k];
-        const Lanes along = n.x * x + n.y * y + n.z * z, c = (along > 0.0f ? along : none) / z;
-        const Lanes g = 1.0f - c, h = total * c - e[k];
-        gg += g * g, gh += g * h, hh += h * h;
+        const Lanes along = n.x * x + n.y * y + n.z * z, g = 1.0f - (along > 0.0f ? along : none) * per_z;
+        gg += g * g, g_gap += g * gap[k];
     }
-    const Lanes best = gg > 1e-12f ? -gh / gg : all(total), above = best > 0.0f ? best : none,
-                ambient = above < total ? above : all(total);
+    const Lanes best = gg > 1e-12f ? g_gap / gg : none, above = best > 0.0f ? best : none,
+                strength = above < total ? above : all(total);
     Fits f;
-    lanes(f.ambient) = ambient;
-    lanes(f.cost) = hh + ambient * (2.0f * gh + ambient * gg);
+    lanes(f.ambient) = total - strength;
+    lanes(f.cost) = strength * (strength * gg - 2.0f * g_gap);
     return f;
 }
 
@@ -82,16 +83,17 @@ struct Choice {
     float ambient, cost;
 };
 
-Choice best_of(const std::array<float, kNormals>& e, float total, const Directions& d) {
-    const Fits f = fit_ambient(e, total, d);
+Choice best_of(const std::array<float, kNormals>& gap, float total, const Directions& d) {
+    const Fits f = fit_ambient(gap, total, d);
     uint32_t best = 0;
     for (uint32_t lane = 1; lane < kLanes; ++lane)
         if (f.cost[lane] < f.cost[best]) best = lane;
     return {d.at(best), f.ambient[best], f.cost[best]};
 }
 
-/// Pattern search on the hemisphere: steps shrink until they no longer matter at 8 bits.
-Choice search(const std::array<float, kNormals>& e, float total, Choice best) {
+/// Pattern search on the hemisphere: steps shrink until they no longer matter at 8 bits. Steps of a quarter find what
+/// steps of a half find (mean errors .0065, .0257, .0350, .0228 for skies, one lobe, two, windows), in .75 of the time.
+Choice search(const std::array<float, kNormals>& gap, float total, Choice best) {
     for (float step = 0.4f; step > 0.004f;) {
         const Frame f = frame_from_normal(best.direction);
         Directions around;
@@ -99,17 +101,17 @@ Choice search(const std::array<float, kNormals>& e, float total, Choice best) {
             const Vec2& way = kCompass[lane];
             around.set(lane, limit_height(best.direction + (step * way.x) * f.x + (step * way.y) * f.y));
         }
-        const Choice next = best_of(e, total, around);
+        const Choice next = best_of(gap, total, around);
         if (next.cost < best.cost)
             best = next;
         else
-            step *= 0.5f;
+            step *= 0.25f;
     }
     return best;
 }
 
 /// The mean direction of the light, or one of six around z.
-Choice best_start(const std::array<float, kNormals>& e, float total, const float* sh) {
+Choice best_start(const std::array<float, kNormals>& gap, float total, const float* sh) {
     const Vec3 mean = limit_height({-sh[3], -sh[1], sh[2]});
     Directions starts;
     for (uint32_t lane = 0; lane < kLanes; ++lane) starts.set(lane, mean);
@@ -117,7 +119,7 @@ Choice best_start(const std::array<float, kNormals>& e, float total, const float
         const float phi = static_cast<float>(i) * kPi / 3.0f;
         starts.set(i + 1, {0.7660444f * std::cos(phi), 0.7660444f * std::sin(phi), 0.6427876f});
     }
-    return best_of(e, total, starts);
+    return best_of(gap, total, starts);
 }
 
 /// Unsigned float with 5 exponent bits (bias 15) and the given mantissa bits.
@@ -146,12 +148,11 @@ Ahd fit_ahd(const Vec3& irradiance, const float* sh) {
     out.irradiance = irradiance;
     const float total = luminance(irradiance);
     if (!(total > 0.0f)) return out;
-    std::array<float, kNormals> e;
-    for (int k = 0; k < kNormals; ++k) e[k] = sh_irradiance(sh, kFitNormals[k]);
-    e[0] = total;
-    for (const float v : e)
+    std::array<float, kNormals> gap{};
+    for (int k = 1; k < kNormals; ++k) gap[k] = total - sh_irradiance(sh, kFitNormals[k]);
+    for (const float v : gap)
         if (!std::isfinite(v)) return out;
-    const Choice best = search(e, total, best_start(e, total, sh));
+    const Choice best = search(gap, total, best_start(gap, total, sh));
     out.direction = best.direction;
     out.ratio = best.ambient / total;
     // Without a highlight any direction does; z filters best with the neighbours.
