@@ -4,6 +4,7 @@
 // of the other half which the leaning plane leaves (algorithms.md 12).
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -51,6 +52,42 @@ TEST(ShadingNormal, LampsBehindTheSurfaceDoNotLightIt) {
     scene.point_light({0.0f, 0.4f, 2.0f}, 100.0f);
     scene.commit();
     EXPECT_EQ(mean(kit::Bake(scene, kit::settings(1)).layer(AJAR_LAYER_IRRADIANCE)), 0.0);
+}
+
+/// Light that a small tile gets, baked and by brute force, by way of a card of 1 m without a lightmap whose normals
+/// lean up by an angle. A lamp far away, whose own light is not stored, shines on the card from (0, -0.6, 0.8).
+std::array<double, 2> by_way_of_card(double angle, bool back) {
+    kit::MeshData leaf = card(angle);
+    if (back) {
+        for (size_t i = 0; i < leaf.corners.size(); i += 3) {
+            std::swap(leaf.corners[i + 1], leaf.corners[i + 2]);
+            std::swap(leaf.uv[i + 1], leaf.uv[i + 2]);
+        }
+        for (kit::Float3& n : leaf.normals) n = {-n[0], -n[1], -n[2]};
+    }
+    kit::MeshData tile;
+    tile.quad({0.01f, -1, -0.01f}, {-0.01f, -1, -0.01f}, {-0.01f, -1, 0.01f}, {0.01f, -1, 0.01f}, {0, 0}, {1, 1});
+    kit::Scene scene;
+    scene.instance(scene.mesh(tile), scene.diffuse({0, 0, 0}), scene.page(4, 4));
+    scene.instance(scene.mesh(leaf), scene.diffuse({0.5f, 0.5f, 0.5f}), AJAR_NONE);
+    scene.point_light({0.0f, -600.0f, 800.0f}, 1e8f, 0.0f, true);
+    scene.commit();
+    double traced = 0.0;
+    const auto points = kit::trace(scene, kit::reference_settings(1, 16, 64));
+    for (const ajar_reference_point& p : points) traced += p.irradiance[0] / static_cast<double>(points.size());
+    return {mean(kit::Bake(scene, kit::settings(1, 1024)).layer(AJAR_LAYER_IRRADIANCE)), traced};
+}
+
+/// What surfaces without a lightmap, and backs, send on goes by their shading normals: 60 degrees make cos 60 0.6 +
+/// sin 60 0.8 out of the 0.6 of the flat card. The same rays meet both.
+TEST(ShadingNormal, SurfacesWithoutLightmapReflectByTheirs) {
+    const double expected = (0.5 * 0.6 + std::sqrt(0.75) * 0.8) / 0.6;
+    for (const bool back : {false, true}) {
+        const auto flat = by_way_of_card(0.0, back), leaning = by_way_of_card(pi / 3, back);
+        EXPECT_GT(flat[0], 0.0);
+        EXPECT_NEAR(leaning[0] / flat[0] / expected, 1.0, 0.005) << (back ? "back" : "front");
+        EXPECT_NEAR(leaning[1] / flat[1] / expected, 1.0, 0.005) << "brute force, " << (back ? "back" : "front");
+    }
 }
 
 /// Every other point of a smooth cube sees no more of the sky than its own plane leaves.

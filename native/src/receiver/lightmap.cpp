@@ -116,7 +116,6 @@ struct Builder {
     Vec2 texel_corner(const Fragment& f) const;
     float depth_inside(uint32_t triangle, const Vec2& p) const;
     Vec3 smooth_position(const TexelPoint& p) const;
-    Vec3 shading_normal(const TexelPoint& p) const;
     Spot spot_at(uint32_t receiver, const TexelPoint& point);
     bool is_covered(uint32_t receiver, const Spot& spot) const;
     Spots scattered_spots(uint32_t receiver, uint32_t base);
@@ -234,12 +233,6 @@ Vec3 Builder::smooth_position(const TexelPoint& p) const {
     const Vec3 n = scene.geometric_normal(p.triangle);
     const float outward = glm::dot(moved - flat, n);
     return outward > 0.0f ? flat + n * outward : flat;
-}
-
-Vec3 Builder::shading_normal(const TexelPoint& p) const {
-    const Vec3 n = scene.corner_normal(p.triangle, 0) * (1.0f - p.u - p.v) + scene.corner_normal(p.triangle, 1) * p.u +
-                   scene.corner_normal(p.triangle, 2) * p.v;
-    return normalize_or(n, scene.geometric_normal(p.triangle));
 }
 
 /// Where a ray that stands for a point of the texel starts.
@@ -372,9 +365,11 @@ void Builder::set_frame(uint32_t r) {
                eb = scene.positions[t.vertex[2]] - scene.positions[t.vertex[0]];
     const Vec3 du = (ea * b.y - eb * a.y) / det, dv = (eb * a.x - ea * b.x) / det;
     Vec3 normal(0.0f);
-    for (uint32_t k = 0; k < 4; ++k)
-        normal +=
-            shading_normal(point(r, {(static_cast<float>(k) + 0.5f) / 4.0f, static_cast<float>(k & 1) * 0.5f + 0.25f}));
+    for (uint32_t k = 0; k < 4; ++k) {
+        const TexelPoint p =
+            point(r, {(static_cast<float>(k) + 0.5f) / 4.0f, static_cast<float>(k & 1) * 0.5f + 0.25f});
+        normal += scene.shading_normal(p.triangle, p.u, p.v);
+    }
     const Vec3 n = normalize_or(normal, scene.geometric_normal(triangle));
     out.triangle[r] = triangle;
     out.frame[r] = frame_from_tangent(n, du, glm::dot(glm::cross(n, du), dv) < 0.0f ? -1.0f : 1.0f);

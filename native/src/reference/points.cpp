@@ -187,7 +187,7 @@ bool PointChooser::is_parted(const ReferencePoint& point, uint32_t draw) const {
     const Snapshot& s = world_.scene;
     const float size = texel_edge(s, point.place.triangle);
     const auto above = [&](const Place& p) {
-        return s.position(p.triangle, p.u, p.v) + shading_normal(s, p.triangle, p.u, p.v) * (kProbeHeight * size);
+        return s.position(p.triangle, p.u, p.v) + s.shading_normal(p.triangle, p.u, p.v) * (kProbeHeight * size);
     };
     const Vec3 from = above(point.place);
     for (int i = 0; i < kSideProbes; ++i)

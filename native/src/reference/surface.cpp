@@ -20,22 +20,18 @@ Vec3 smooth_position(const Snapshot& s, uint32_t triangle, float u, float v) {
 
 } // namespace
 
-Vec3 shading_normal(const Snapshot& s, uint32_t triangle, float u, float v) {
-    const Vec3 n = s.corner_normal(triangle, 0) * (1.0f - u - v) + s.corner_normal(triangle, 1) * u +
-                   s.corner_normal(triangle, 2) * v;
-    return normalize_or(n, s.geometric_normal(triangle));
-}
-
 Vertex front_vertex(const World& world, uint32_t triangle, float u, float v) {
     const Vec3 position = smooth_position(world.scene, triangle, u, v);
-    const Vec3 n = shading_normal(world.scene, triangle, u, v);
+    const Vec3 n = world.scene.shading_normal(triangle, u, v);
     const Vec3 side = world.scene.geometric_normal(triangle);
     return {world.tracer.offset(position, side), n, side, false};
 }
 
 Vertex flat_vertex(const World& world, const Hit& hit) {
-    const Vec3 n = world.scene.geometric_normal(hit.triangle) * (hit.back ? -1.0f : 1.0f);
-    return {world.tracer.offset(world.scene.position(hit.triangle, hit.u, hit.v), n), n, n, false};
+    const float turn = hit.back ? -1.0f : 1.0f;
+    const Vec3 side = world.scene.geometric_normal(hit.triangle) * turn;
+    const Vec3 n = world.scene.shading_normal(hit.triangle, hit.u, hit.v) * turn;
+    return {world.tracer.offset(world.scene.position(hit.triangle, hit.u, hit.v), side), n, side, false};
 }
 
 } // namespace ajar

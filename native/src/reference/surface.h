@@ -5,14 +5,12 @@
 
 namespace ajar {
 
-/// Unit shading normal inside a triangle, on the side that holds its lightmap.
-Vec3 shading_normal(const Snapshot& scene, uint32_t triangle, float u, float v);
-
 /// Where light leaves the lightmapped side of a triangle: on the smooth surface that its normals
 /// describe (Hanika 2021), off the surface far enough for rays to start there.
 Vertex front_vertex(const World& world, uint32_t triangle, float u, float v);
 
-/// The same at a hit of the back or of a surface without lightmap: flat, on the side of the ray.
+/// The same at a hit of the back or of a surface without lightmap: on the flat triangle, with the shading normal of the
+/// side that the ray met.
 Vertex flat_vertex(const World& world, const Hit& hit);
 
 } // namespace ajar

@@ -120,6 +120,8 @@ struct Snapshot {
     float area(uint32_t triangle) const;
     /// Unit shading normal of corner 0..2 in world space.
     Vec3 corner_normal(uint32_t triangle, int corner) const;
+    /// Unit shading normal inside a triangle: of its front, whatever lies in between its corners' normals.
+    Vec3 shading_normal(uint32_t triangle, float u, float v) const;
     /// Lightmap UV of a corner in texels of its page.
     Vec2 lightmap_uv(uint32_t triangle, int corner) const;
 };

@@ -435,6 +435,17 @@ struct Gatherer {
         float spots = 0.0f;
     };
 
+    /// Unit normals of the side of a surface that a ray met: of its shading, which the cosine is measured from, and of
+    /// its plane, whose back gives and gets no light.
+    struct Facing {
+        Vec3 shading, side;
+    };
+    Facing facing_of(const Hit& hit) const {
+        const float turn = hit.back ? -1.0f : 1.0f;
+        return {g.scene.shading_normal(hit.triangle, hit.u, hit.v) * turn,
+                g.scene.geometric_normal(hit.triangle) * turn};
+    }
+
     bool has_spots() const { return o.unmapped_direct && g.spots != nullptr && !g.spots->empty(); }
     uint32_t spots_per_receiver() const { return std::max(o.samples / kRaysPerSpot, 1u); }
     bool takes_spots(uint32_t local) const { return has_spots() && !g.receivers.has_moved(tile.first + local); }
@@ -452,11 +463,11 @@ struct Gatherer {
 
     /// What one emitter sample sends off a surface at p. Lamps share it with places drawn from their side, emissive
     /// triangles with the chain's next ray.
-    void direct_light(const Vec3& p, const Vec3& n, uint32_t triangle, const Through& through, uint32_t seed,
+    void direct_light(const Vec3& p, const Facing& n, uint32_t triangle, const Through& through, uint32_t seed,
                       const Sharing& sharing);
 
     /// Light of an emitter sample off a surface at p, times scale over what the way there is worth.
-    void reflect(const Vec3& p, const Vec3& n, uint32_t e, const EmitterSample& s, Through through, float scale);
+    void reflect(const Vec3& p, const Facing& n, uint32_t e, const EmitterSample& s, Through through, float scale);
 
     /// Share of places drawn from the lamps' side in the light of one, by the balance heuristic.
     /// reaches(): whether they draw it at all.
@@ -486,7 +497,7 @@ struct Gatherer {
     void receive_spot(uint32_t i, uint32_t lane, uint32_t number, PacketDirections& local);
 
     /// The same for a surface at p on such a chain.
-    void chain_spot(const Vec3& p, const Vec3& n, const Through& through, uint32_t seed);
+    void chain_spot(const Vec3& p, const Facing& n, const Through& through, uint32_t seed);
 
     /// Follows a ray of such a stand-in. cosine: at its start.
     void path(const Ray& ray, Through through, uint32_t seed, float cosine);

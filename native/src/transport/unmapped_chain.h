@@ -12,42 +12,44 @@ void Gatherer<Sink>::unmapped(const Ray& ray, const Hit& hit, Through through, c
                               uint32_t seed, const Sender& sender) {
     if (!(max_component(reflectance) > 0.0f)) return;
     const Working here(Effect::unmapped_surfaces);
-    Vec3 n = g.scene.geometric_normal(hit.triangle);
-    if (hit.back) n = -n;
-    const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n);
+    const Facing n = facing_of(hit);
+    const Vec3 p = g.tracer.offset(ray.origin + ray.direction * hit.t, n.side);
     through.color *= reflectance;
     if (o.unmapped_direct) {
-        const float facing = std::abs(glm::dot(ray.direction, n)) / std::max(hit.t * hit.t, 1e-30f);
+        const float facing = std::abs(glm::dot(ray.direction, n.side)) / std::max(hit.t * hit.t, 1e-30f);
         direct_light(p, n, hit.triangle, through, hash_combine(seed, 0x11u), {sender.density * facing, sender.spots});
     }
     if (has_spots() && unit_float(hash_combine(seed, 0x66u)) < kChainSpots) chain_spot(p, n, through, seed);
     if (unit_float(hash_combine(seed, 0x22u)) >= survives) return;
     const Vec3 local = sample_hemisphere(owen_sobol(0, hash_combine(seed, 0x33u)), 1.0f);
+    const Vec3 w = frame_from_normal(n.shading).to_world(local);
+    if (!(glm::dot(w, n.side) > 0.0f)) return;
     through.color /= survives;
-    path({p, frame_from_normal(n).to_world(local)}, through, hash_combine(seed, 0x44u), local.z);
+    path({p, w}, through, hash_combine(seed, 0x44u), local.z);
 }
 
 template <class Sink>
-void Gatherer<Sink>::direct_light(const Vec3& p, const Vec3& n, uint32_t triangle, const Through& through,
+void Gatherer<Sink>::direct_light(const Vec3& p, const Facing& n, uint32_t triangle, const Through& through,
                                   uint32_t seed, const Sharing& sharing) {
     float chance;
-    const uint32_t e = g.emitters.pick_anywhere(p, n, hash32(seed), chance);
+    const uint32_t e = g.emitters.pick_anywhere(p, n.shading, hash32(seed), chance);
     if (e == EmitterSet::kNone) return;
     const EmitterSample s = g.emitters.sample(e, p, owen_sobol(0, seed));
     float weight = 1.0f;
     if (std::isfinite(s.distance) && s.pdf > 0.0f)
-        weight = s.pdf / (s.pdf + std::max(glm::dot(s.direction, n), 0.0f) * kInvPi);
+        weight = s.pdf / (s.pdf + std::max(glm::dot(s.direction, n.shading), 0.0f) * kInvPi);
     else if (sharing.gather > 0.0f && g.spots != nullptr)
-        weight =
-            1.0f - spot_share(sharing, g.spots->density(e, p, n), [&] { return g.spots->reaches(e, triangle, p); });
+        weight = 1.0f -
+                 spot_share(sharing, g.spots->density(e, p, n.side), [&] { return g.spots->reaches(e, triangle, p); });
     reflect(p, n, e, s, through, weight / chance);
 }
 
 template <class Sink>
-void Gatherer<Sink>::reflect(const Vec3& p, const Vec3& n, uint32_t e, const EmitterSample& s, Through through,
+void Gatherer<Sink>::reflect(const Vec3& p, const Facing& n, uint32_t e, const EmitterSample& s, Through through,
                              float scale) {
-    const float cosine = glm::dot(s.direction, n);
-    if (!(cosine > 0.0f) || !(max_component(s.weight) > 0.0f) || !(scale > 0.0f)) return;
+    const float cosine = glm::dot(s.direction, n.shading);
+    if (!(cosine > 0.0f) || !(glm::dot(s.direction, n.side) > 0.0f)) return;
+    if (!(max_component(s.weight) > 0.0f) || !(scale > 0.0f)) return;
     if constexpr (Sink::kSwitches)
         if (const Presence there = g.emitters.presence(e);
             there.element != kNoElement && !through.condition.require(g.scene.elements, there))
@@ -91,7 +93,8 @@ void Gatherer<Sink>::receive(const Glint& glint, const Vec3& x, Through through,
     if (g.tracer.occluded(ray, kMaskGather)) return;
     through.color *= glint.reflectance;
     const EmitterSample s = g.emitters.sample(spot.emitter, p, owen_sobol(0, seed));
-    const auto arrive = [&](const Through& t) { reflect(p, spot.normal, spot.emitter, s, t, scale); };
+    const Facing n = facing_of(spot.hit);
+    const auto arrive = [&](const Through& t) { reflect(p, n, spot.emitter, s, t, scale); };
     if constexpr (Sink::kSwitches) {
         std::vector<Hit> switches;
         g.tracer.all_switches(ray, kMaskGatherSwitch, switches);
@@ -137,11 +140,11 @@ void Gatherer<Sink>::receive_spot(uint32_t i, uint32_t lane, uint32_t number, Pa
 }
 
 template <class Sink>
-void Gatherer<Sink>::chain_spot(const Vec3& p, const Vec3& n, const Through& through, uint32_t seed) {
+void Gatherer<Sink>::chain_spot(const Vec3& p, const Facing& n, const Through& through, uint32_t seed) {
     Glint glint;
     if (!find_glint(p, owen_sobol(0, hash_combine(seed, 0x77u)), glint)) return;
-    const float cosine = glm::dot(glint.direction, n);
-    if (!(cosine > 0.0f)) return;
+    const float cosine = glm::dot(glint.direction, n.shading);
+    if (!(cosine > 0.0f) || !(glm::dot(glint.direction, n.side) > 0.0f)) return;
     const Sharing sharing{cosine * kInvPi * glint.per_area, kChainSpots};
     const float share = spot_share(sharing, glint.spot.density, [] { return true; });
     if (!(share > 0.0f)) return;
