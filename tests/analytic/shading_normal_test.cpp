@@ -29,6 +29,14 @@ double mean(const kit::Layer& e) {
     return sum / (e.width * e.height);
 }
 
+/// Mean by brute force.
+double traced_mean(const kit::Scene& scene, uint32_t bounces) {
+    double sum = 0.0;
+    const auto points = kit::trace(scene, kit::reference_settings(bounces, 16, 64));
+    for (const ajar_reference_point& p : points) sum += p.irradiance[0];
+    return sum / static_cast<double>(points.size());
+}
+
 TEST(ShadingNormal, EvenSkyOnACardThatLeans) {
     for (const double degrees : {0.0, 20.0, 60.0, 90.0}) {
         const double angle = degrees / 180.0 * pi, expected = 0.5 * pi * (1.0 + std::cos(angle));
@@ -38,10 +46,7 @@ TEST(ShadingNormal, EvenSkyOnACardThatLeans) {
         scene.commit();
         const kit::Layer e = kit::Bake(scene, kit::settings(2, 1024)).layer(AJAR_LAYER_IRRADIANCE);
         EXPECT_NEAR(mean(e) / expected, 1.0, 0.005) << degrees << " degrees";
-        double traced = 0.0;
-        const auto points = kit::trace(scene, kit::reference_settings(2, 16, 64));
-        for (const ajar_reference_point& p : points) traced += p.irradiance[0] / static_cast<double>(points.size());
-        EXPECT_NEAR(traced / expected, 1.0, 0.01) << "brute force, " << degrees << " degrees";
+        EXPECT_NEAR(traced_mean(scene, 2) / expected, 1.0, 0.01) << "brute force, " << degrees << " degrees";
     }
 }
 
@@ -72,10 +77,7 @@ std::array<double, 2> by_way_of_card(double angle, bool back) {
     scene.instance(scene.mesh(leaf), scene.diffuse({0.5f, 0.5f, 0.5f}), AJAR_NONE);
     scene.point_light({0.0f, -600.0f, 800.0f}, 1e8f, 0.0f, true);
     scene.commit();
-    double traced = 0.0;
-    const auto points = kit::trace(scene, kit::reference_settings(1, 16, 64));
-    for (const ajar_reference_point& p : points) traced += p.irradiance[0] / static_cast<double>(points.size());
-    return {mean(kit::Bake(scene, kit::settings(1, 1024)).layer(AJAR_LAYER_IRRADIANCE)), traced};
+    return {mean(kit::Bake(scene, kit::settings(1, 1024)).layer(AJAR_LAYER_IRRADIANCE)), traced_mean(scene, 1)};
 }
 
 /// What surfaces without a lightmap, and backs, send on goes by their shading normals: 60 degrees make cos 60 0.6 +

@@ -22,26 +22,27 @@ from support import bake_cases  # noqa: E402
 from support.addon import load_addon  # noqa: E402
 
 load_addon()
+from ajar.accuracy.bakes import LUMINANCE  # noqa: E402
 from ajar.bridge.client import WorkerClient  # noqa: E402
 from ajar.bridge.runtime import Runtime  # noqa: E402
 from ajar.bridge.snapshot_io import Reader  # noqa: E402
-from support.cycles_texels import LUMINANCE, CyclesTexels, empty_file, export  # noqa: E402
+from support.cycles_texels import CyclesTexels, empty_file, export  # noqa: E402
 
 FOLDER = os.environ.get("AJAR_TEST_DIR") or tempfile.mkdtemp(prefix="ajar-test-")
 WISHES = {"preset": "PRODUCTION", "bounces": 24}
 
 
 def bake(folder):
-    """(package, report's path) of a snapshot."""
-    package, report = os.path.join(folder, "package"), os.path.join(folder, "report.json")
-    worker = WorkerClient.bake(folder, package, report)
+    """Package of a snapshot."""
+    package = os.path.join(folder, "package")
+    worker = WorkerClient.bake(folder, package, os.path.join(folder, "report.json"))
     try:
         for _ in worker.events():
             pass
         assert worker.outcome["event"] == "done", worker.outcome
     finally:
         worker.close()
-    return package, report
+    return package
 
 
 def luminance(light, page):
@@ -79,7 +80,7 @@ def run_case(case):
     bpy.context.view_layer.update()
     folder = os.path.join(FOLDER, case.name.replace(" ", "_"))
     export(folder, {**WISHES, "texels_per_meter": case.texels_per_meter})
-    package, _ = bake(folder)
+    package = bake(folder)
     with Reader(Path(folder), "snapshot") as reader:
         scene = CyclesTexels(reader.data)
     print(f"     {case.name}: {time.monotonic() - begin:.1f} s", flush=True)

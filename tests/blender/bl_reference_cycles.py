@@ -23,9 +23,10 @@ from support.addon import load_addon  # noqa: E402
 
 load_addon()
 from ajar.accuracy import engine  # noqa: E402
+from ajar.accuracy.bakes import LUMINANCE  # noqa: E402
 from ajar.bridge import abi  # noqa: E402
 from ajar.bridge.library import check, load_library  # noqa: E402
-from support.cycles_texels import LUMINANCE, CyclesTexels, empty_file, export, student_quantile  # noqa: E402
+from support.cycles_texels import CyclesTexels, empty_file, export, student_quantile  # noqa: E402
 
 FOLDER = os.environ.get("AJAR_TEST_DIR") or tempfile.mkdtemp(prefix="ajar-test-")
 DENSITY = 6.0  # texels per metre

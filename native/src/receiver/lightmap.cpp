@@ -223,7 +223,7 @@ float Builder::depth_inside(uint32_t triangle, const Vec2& p) const {
 Vec3 Builder::smooth_position(const TexelPoint& p) const {
     const Triangle& t = scene.triangles[p.triangle];
     const Vec3 flat = scene.position(p.triangle, p.u, p.v);
-    if (scene.meshes[scene.instances[t.instance].mesh].corner_normals.empty()) return flat;
+    if (scene.is_flat(p.triangle)) return flat;
     const float weight[3] = {1.0f - p.u - p.v, p.u, p.v};
     Vec3 moved(0.0f);
     for (int k = 0; k < 3; ++k) {

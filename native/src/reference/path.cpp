@@ -116,7 +116,7 @@ bool PathTracer::reflect(Walk& walk, const Hit& hit, const Vec3& reflectance) co
         if (walk.random.uniform() >= survives) return false;
         walk.through /= survives;
     }
-    walk.at = mapped ? front_vertex(world_, hit.triangle, hit.u, hit.v) : flat_vertex(world_, hit);
+    walk.at = mapped ? front_vertex(world_, hit.triangle, hit.u, hit.v) : unmapped_vertex(world_, hit);
     return true;
 }
 

@@ -8,7 +8,7 @@ namespace {
 Vec3 smooth_position(const Snapshot& s, uint32_t triangle, float u, float v) {
     const Triangle& t = s.triangles[triangle];
     const Vec3 flat = s.position(triangle, u, v), n = s.geometric_normal(triangle);
-    if (s.meshes[s.instances[t.instance].mesh].corner_normals.empty()) return flat;
+    if (s.is_flat(triangle)) return flat;
     const float weight[3] = {1.0f - u - v, u, v};
     float outward = 0.0f;
     for (int k = 0; k < 3; ++k) {
@@ -27,7 +27,7 @@ Vertex front_vertex(const World& world, uint32_t triangle, float u, float v) {
     return {world.tracer.offset(position, side), n, side, false};
 }
 
-Vertex flat_vertex(const World& world, const Hit& hit) {
+Vertex unmapped_vertex(const World& world, const Hit& hit) {
     const float turn = hit.back ? -1.0f : 1.0f;
     const Vec3 side = world.scene.geometric_normal(hit.triangle) * turn;
     const Vec3 n = world.scene.shading_normal(hit.triangle, hit.u, hit.v) * turn;

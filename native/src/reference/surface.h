@@ -9,8 +9,8 @@ namespace ajar {
 /// describe (Hanika 2021), off the surface far enough for rays to start there.
 Vertex front_vertex(const World& world, uint32_t triangle, float u, float v);
 
-/// The same at a hit of the back or of a surface without lightmap: on the flat triangle, with the shading normal of the
-/// side that the ray met.
-Vertex flat_vertex(const World& world, const Hit& hit);
+/// The same at a hit of the back or of a surface without lightmap: on the triangle itself, with the normals of the side
+/// that the ray met.
+Vertex unmapped_vertex(const World& world, const Hit& hit);
 
 } // namespace ajar

@@ -45,16 +45,15 @@ float Snapshot::area(uint32_t triangle) const {
 Vec3 Snapshot::corner_normal(uint32_t triangle, int corner) const {
     const Triangle& t = triangles[triangle];
     const Instance& instance = instances[t.instance];
-    const Mesh& mesh = meshes[instance.mesh];
-    if (mesh.corner_normals.empty()) return geometric_normal(triangle);
-    const DVec3 local(mesh.corner_normals[3 * static_cast<size_t>(t.source) + corner]);
+    if (is_flat(triangle)) return geometric_normal(triangle);
+    const DVec3 local(meshes[instance.mesh].corner_normals[3 * static_cast<size_t>(t.source) + corner]);
     const DVec3 world = instance.transform.normal(local) * (t.mirrored ? -1.0 : 1.0);
     const double length = glm::length(world);
     return length > 0.0 && std::isfinite(length) ? Vec3(world / length) : geometric_normal(triangle);
 }
 
 Vec3 Snapshot::shading_normal(uint32_t triangle, float u, float v) const {
-    if (meshes[instances[triangles[triangle].instance].mesh].corner_normals.empty()) return geometric_normal(triangle);
+    if (is_flat(triangle)) return geometric_normal(triangle);
     const Vec3 n =
         corner_normal(triangle, 0) * (1.0f - u - v) + corner_normal(triangle, 1) * u + corner_normal(triangle, 2) * v;
     return normalize_or(n, geometric_normal(triangle));

@@ -118,9 +118,11 @@ struct Snapshot {
     /// Unit geometric normal; (0,0,1) never occurs for a kept triangle by accident: they have area.
     Vec3 geometric_normal(uint32_t triangle) const;
     float area(uint32_t triangle) const;
+    /// Whether a triangle is of a mesh without normals of its own: its shading normals are the geometric one.
+    bool is_flat(uint32_t triangle) const { return meshes[instance_of(triangle).mesh].corner_normals.empty(); }
     /// Unit shading normal of corner 0..2 in world space.
     Vec3 corner_normal(uint32_t triangle, int corner) const;
-    /// Unit shading normal inside a triangle: of its front, whatever lies in between its corners' normals.
+    /// Unit shading normal of the front at a point of a triangle, in world space: that of its corners, interpolated.
     Vec3 shading_normal(uint32_t triangle, float u, float v) const;
     /// Lightmap UV of a corner in texels of its page.
     Vec2 lightmap_uv(uint32_t triangle, int corner) const;

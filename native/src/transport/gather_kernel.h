@@ -442,8 +442,9 @@ struct Gatherer {
     };
     Facing facing_of(const Hit& hit) const {
         const float turn = hit.back ? -1.0f : 1.0f;
-        return {g.scene.shading_normal(hit.triangle, hit.u, hit.v) * turn,
-                g.scene.geometric_normal(hit.triangle) * turn};
+        const Vec3 side = g.scene.geometric_normal(hit.triangle) * turn;
+        if (g.scene.is_flat(hit.triangle)) return {side, side};
+        return {g.scene.shading_normal(hit.triangle, hit.u, hit.v) * turn, side};
     }
 
     bool has_spots() const { return o.unmapped_direct && g.spots != nullptr && !g.spots->empty(); }

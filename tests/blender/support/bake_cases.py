@@ -6,9 +6,9 @@ import math
 import random
 from dataclasses import dataclass, field
 
-import bpy
+from mathutils import Vector
 
-from . import cycles, light_cases
+from . import cycles, elements, light_cases
 from .reference_cases import GREY, WARM, lamp_at, make_box, make_mesh, make_quad
 
 ROOM = ((0, 0, 0), (4, 3, 3))
@@ -35,12 +35,6 @@ class Case:
     samples: int = 256
     texels_per_meter: float = 4.0
     is_long: bool = False
-
-
-def _light_set(name):
-    entry = bpy.context.scene.ajar.light_sets.add()
-    entry.name = name
-    return name
 
 
 def _walls(x0, y0, z0, x1, y1, z1):
@@ -74,7 +68,7 @@ def _stack(count, lit_by_set):
         boards[-1].ajar.movable = 'TOGGLE'
     lamp = lamp_at('POINT', (1.9, 1.4, 2.6), energy=60, shadow_soft_size=0.1)
     if lit_by_set:
-        lamp.ajar.light_set = _light_set("lamp")
+        lamp.ajar.light_set = elements.light_set("lamp").name
     states = [State("start")]
     draw = random.Random(count)
     for i in range(4):
@@ -92,7 +86,7 @@ def _sets(count):
     for i in range(count):
         x, y = 4 * (i % columns + 0.5) / columns, 3 * (i // columns + 0.5) / rows
         lamp = lamp_at('POINT', (x, y, 2.4), energy=200 / count, shadow_soft_size=0.1)
-        lamp.ajar.light_set = _light_set(f"set {i}")
+        lamp.ajar.light_set = elements.light_set(f"set {i}").name
     make_box("Crate", (1.5, 1.0, 0.05), (2.5, 2.0, 0.8), cycles.diffuse_material("Crate", WARM))
     return [State("all on")]
 
@@ -137,29 +131,20 @@ def _leaves():
 
 def _smooth_room():
     """A room of one mesh whose walls are divided and shaded smooth: normals lean in its edges."""
-    steps, points, faces, index = 6, [], [], {}
-
-    def vertex(point):
-        key = tuple(round(v, 6) for v in point)
-        if key not in index:
-            index[key] = len(points)
-            points.append(key)
-        return index[key]
-
-    for a, b, c, d in _walls(*ROOM[0], *ROOM[1]):
-        grid = lambda s, t: vertex(  # noqa: E731
+    steps, points, faces = 6, {}, []  # points: index by position, so that walls share those in their edges
+    for a, b, _, d in _walls(*ROOM[0], *ROOM[1]):
+        corner, across, up = Vector(a), Vector(b) - Vector(a), Vector(d) - Vector(a)
+        grid = [
             [
-                (1 - s) * ((1 - t) * p + t * q) + s * ((1 - t) * r + t * u)
-                for p, q, r, u in zip(a, d, b, c)  # noqa: B023
+                tuple(round(v, 6) for v in corner + across * (i / steps) + up * (j / steps))
+                for j in range(steps + 1)
             ]
-        )
-        at = lambda i, j: grid(i / steps, j / steps)  # noqa: E731, B023
-        faces += [
-            (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1))
-            for i in range(steps)
-            for j in range(steps)
+            for i in range(steps + 1)
         ]
-    make_mesh("Room", points, faces, cycles.diffuse_material("Grey", GREY), smooth=True)
+        at = [[points.setdefault(point, len(points)) for point in column] for column in grid]
+        for i in range(steps):
+            faces += [(at[i][j], at[i + 1][j], at[i + 1][j + 1], at[i][j + 1]) for j in range(steps)]
+    make_mesh("Room", list(points), faces, cycles.diffuse_material("Grey", GREY), smooth=True)
     lamp_at('POINT', (1.5, 1.2, 2.0), energy=60, shadow_soft_size=0.1)
     return [State("start")]
 
@@ -173,19 +158,15 @@ def _window_room(edge, solid):
     parts = [(y0, left, z0, z1), (right, y1, z0, z1), (left, right, z0, below), (left, right, above, z1)]
     if solid:
         thick = 0.2
-        for axis in range(3):
-            for side in (0, 1):
-                if (axis, side) == (0, 1):
-                    continue
-                low, high = [v - thick for v in (x0, y0, z0)], [v + thick for v in (x1, y1, z1)]
-                low[axis], high[axis] = (
-                    (ROOM[0][axis] - thick, ROOM[0][axis])
-                    if side == 0
-                    else (ROOM[1][axis], ROOM[1][axis] + thick)
-                )
-                for other in range(axis):  # the boxes meet without lying in each other
-                    low[other], high[other] = ROOM[0][other], ROOM[1][other]
-                make_box(f"Wall {axis}{side}", low, high, grey)
+        boxes = [  # they meet without lying in each other
+            ((x0 - thick, y0 - thick, z0 - thick), (x0, y1 + thick, z1 + thick)),
+            ((x0, y0 - thick, z0 - thick), (x1, y0, z1 + thick)),
+            ((x0, y1, z0 - thick), (x1, y1 + thick, z1 + thick)),
+            ((x0, y0, z0 - thick), (x1, y1, z0)),
+            ((x0, y0, z1), (x1, y1, z1 + thick)),
+        ]
+        for number, (low, high) in enumerate(boxes):
+            make_box(f"Wall {number}", low, high, grey)
         for number, (a, b, c, d) in enumerate(parts):
             make_box(f"Front {number}", (x1, a, c), (x1 + thick, b, d), grey)
     else:

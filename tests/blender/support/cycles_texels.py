@@ -5,12 +5,12 @@ import time
 import bpy
 import numpy as np
 from ajar import job
+from ajar.accuracy.bakes import LUMINANCE
 
 import cycles_bake
 
 from . import merge
 
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 MAX_STEP = 0.15  # between neighbours without an edge of light or shadow
 
 
