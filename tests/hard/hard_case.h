@@ -49,6 +49,7 @@ std::span<const Case> range_cases();
 std::span<const Case> furnace_cases();
 std::span<const Case> side_cases();
 std::span<const Case> hall_cases();
+std::span<const Case> hole_cases();
 
 /// Largest channel value; infinite if some is not finite or negative.
 double largest(const Layer& e);

@@ -40,7 +40,7 @@ std::vector<Case> all_cases() {
     for (const auto cases :
          {hard::geometry_cases, hard::lamp_cases, hard::element_cases, hard::switch_cases, hard::door_cases,
           hard::set_cases, hard::leak_cases, hard::unmapped_cases, hard::layer_cases, hard::near_cases,
-          hard::range_cases, hard::furnace_cases, hard::side_cases, hard::hall_cases})
+          hard::range_cases, hard::furnace_cases, hard::side_cases, hard::hall_cases, hard::hole_cases})
         for (const Case& c : cases()) out.push_back(c);
     return out;
 }

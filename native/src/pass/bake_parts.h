@@ -18,7 +18,14 @@ inline constexpr uint32_t kPilotReceivers = 8; ///< of each part
 inline constexpr double kPlannedPart = 0.97;   ///< of the time left for the final gather; checks of the error follow
 inline constexpr float kFinalShare = 0.5f;     ///< cosine share of the final rays (algorithms.md 1.10)
 
-enum BakeSalt : uint32_t { kSaltSource = 1, kSaltBounce = 2, kSaltPilot = 3, kSaltFinal = 4, kSaltTwin = 5 };
+enum BakeSalt : uint32_t {
+    kSaltSource = 1,
+    kSaltBounce = 2,
+    kSaltPilot = 3,
+    kSaltFinal = 4,
+    kSaltTwin = 5,
+    kSaltRareLight = 6
+};
 
 /// Ray counts of a tile.
 struct RayPlan {

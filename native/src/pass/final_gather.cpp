@@ -6,7 +6,7 @@
 
 #include "pass/bake.h"
 #include "pass/missed_light.h"
-#include "pass/tile_estimate.h"
+#include "pass/packet_noise.h"
 #include "pass/twin_check.h"
 
 namespace ajar {
@@ -14,34 +14,9 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kPackets = kTileReceivers / kLanes;
-constexpr uint32_t kPool = 4;                  ///< packets whose noise speaks for each of them
+constexpr uint64_t kRaysInTheDark = 1 << 20;   ///< that look for light where none was met
 constexpr size_t kPilotTiles = 2048;           ///< that the pilot looks at, of scenes with more than twice as many
 using Packets = std::array<uint8_t, kPackets>; ///< marks
-
-void mean_noise(const TileEstimate& t, uint32_t first, uint32_t end, MeasuredNoise& out) {
-    const float share = 1.0f / static_cast<float>(end - first);
-    for (uint32_t lane = first; lane < end; ++lane) {
-        out.level += luminance(t.irradiance(lane)) * share;
-        out.gather_variance += static_cast<float>(t.gather_variance(lane)) * share;
-        out.direct_variance += static_cast<float>(t.direct_variance(lane)) * share;
-    }
-}
-
-/// Noise of each packet: its own, but not less than that of its neighbours together. Eight receivers are
-/// few, and rays that are rare and bright may have missed them.
-std::vector<MeasuredNoise> packet_noise(const TileEstimate& t, uint32_t lanes) {
-    std::vector<MeasuredNoise> own((lanes + kLanes - 1) / kLanes);
-    for (uint32_t p = 0; p < own.size(); ++p) mean_noise(t, p * kLanes, std::min((p + 1) * kLanes, lanes), own[p]);
-    std::vector<MeasuredNoise> pooled = own;
-    for (size_t p = 0; p < own.size(); ++p) {
-        const size_t first = p / kPool * kPool, end = std::min(first + kPool, own.size());
-        float gather = 0.0f, direct = 0.0f;
-        for (size_t q = first; q < end; ++q) gather += own[q].gather_variance, direct += own[q].direct_variance;
-        pooled[p].gather_variance = std::max(own[p].gather_variance, gather / static_cast<float>(end - first));
-        pooled[p].direct_variance = std::max(own[p].direct_variance, direct / static_cast<float>(end - first));
-    }
-    return pooled;
-}
 
 } // namespace
 
@@ -75,8 +50,8 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
     NoiseTrial trial{few, {}, {}, {}};
     const TileEstimate a = estimate(part, rays, groups, {}, hash_combine(seed, 1), false),
                        b = estimate(part, rays, groups, {}, hash_combine(seed, 2), false);
-    mean_noise(a, 0, part.count, trial.many);
-    mean_noise(b, 0, part.count, trial.strata);
+    trial.many = mean_noise(a, 0, part.count);
+    trial.strata = mean_noise(b, 0, part.count);
     trial.strata.gather_variance = 0.5f * (trial.strata.gather_variance + trial.many.gather_variance);
     trial.strata.direct_variance = 0.5f * (trial.strata.direct_variance + trial.many.direct_variance);
     for (uint32_t lane = 0; lane < part.count; ++lane) {
@@ -88,6 +63,32 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
             half_square((sum_of(*a.direct, lane) - sum_of(*b.direct, lane)) / std::max(1.0f, float(rays.direct)));
     }
     return trial;
+}
+
+/// Rare light in parts of tiles, with these rays.
+std::vector<RareLight> Baker::rare_light_of(const std::vector<Tile>& tiles, const RayPlan& rays, uint32_t seed) {
+    std::vector<RareLight> parts(tiles.size() * kPilotParts);
+    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
+        DirectGroups groups = look_around(tiles[i], seed);
+        const Tile typical = split(s_.receivers, tiles[i]).typical();
+        for (uint32_t k = 0; k < kPilotParts; ++k) {
+            const Tile part = pilot_part(typical, k);
+            groups.start_at(part.first - tiles[i].first);
+            parts[i * kPilotParts + k] = rare_light(estimate(part, rays, groups, {}, seed, false), 0, part.count);
+        }
+    });
+    return parts;
+}
+
+/// The scene's rare light, found with more rays than the pilot's, and again where they met none.
+RareLight Baker::look_for_rare_light(const std::vector<Tile>& tiles, const RayPlan& rays) {
+    const uint64_t enough = progress_.rays() + kRaysInTheDark;
+    RareLight found;
+    for (uint32_t look = 0; look == 0 || (!(found.level > 0.0f) && progress_.rays() < enough); ++look) {
+        const uint32_t seed = hash_combine(hash_combine(settings_.seed, kSaltRareLight), look);
+        found = mean_of(rare_light_of(tiles, rays, seed), rays.gather, first_.gather);
+    }
+    return found;
 }
 
 /// Pilot: few receivers of some tiles with few rays, discarded afterwards. They say what is dark, and what the
@@ -105,6 +106,7 @@ void Baker::plan_rays() {
     const size_t step = std::max<size_t>(s_.receivers.tiles.size() / kPilotTiles, 1);
     for (size_t i = 0; i < s_.receivers.tiles.size(); i += step) tiles.push_back(s_.receivers.tiles[i]);
     std::vector<MeasuredNoise> pilot(tiles.size() * kPilotParts);
+    std::vector<RareLight> rare(pilot.size());
     const uint64_t rays_before = progress_.rays();
     const double start = progress_.elapsed();
     const RayPlan small = pilot_rays(goal_.most, goal_.gathers), large = trial_rays(goal_.most, goal_.gathers);
@@ -116,13 +118,18 @@ void Baker::plan_rays() {
         for (uint32_t k = 0; k < kPilotParts; ++k) {
             const Tile part = pilot_part(typical, k);
             groups.start_at(part.first - tiles[i].first);
-            mean_noise(estimate(part, small, groups, {}, seed, false), 0, part.count, pilot[i * kPilotParts + k]);
+            const TileEstimate few = estimate(part, small, groups, {}, seed, false);
+            pilot[i * kPilotParts + k] = mean_noise(few, 0, part.count);
+            rare[i * kPilotParts + k] = rare_light(few, 0, part.count);
             if (is_trial(i, k))
                 trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups, seed);
         }
     });
     goal_.model = fit_noise_model(trials, small, large);
     goal_.dark = dark_level(pilot);
+    goal_.rare = mean_of(rare, small.gather, first_.gather);
+    // The few hits that are most of the light tell little of it.
+    if (goal_.gathers && !(mean_level(pilot) > 2.0f * goal_.rare.level)) goal_.rare = look_for_rare_light(tiles, large);
     if (!timed) return;
     const double seconds_per_ray =
         (progress_.elapsed() - start) / std::max<double>(1.0, static_cast<double>(progress_.rays() - rays_before));
@@ -135,7 +142,7 @@ void Baker::plan_rays() {
 /// Adds further rays to the packets of a part of a tile that need them, all packets with one need together.
 std::vector<Baker::FurtherRays> Baker::refine(const Tile& part, const TileEstimate& first, const NoiseGoal& goal,
                                               DirectGroups& groups, uint32_t seed, TileLight& light) {
-    const std::vector<MeasuredNoise> noise = packet_noise(first, part.count);
+    const std::vector<MeasuredNoise> noise = packet_noise(first, part.count, goal);
     std::vector<FurtherRays> more;
     for (const MeasuredNoise& n : noise) more.push_back({missing_rays(n, first.plan, goal)});
     std::vector<bool> done(noise.size(), false);

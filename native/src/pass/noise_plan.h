@@ -26,6 +26,13 @@ inline constexpr float kPreviewNoise = 0.12f;
 /// doors.
 inline constexpr float kPacketSpread = 1.8f, kPartSpread = 1.85f;
 
+/// Light that few rays meet, and the variance it makes, of a mean over receivers.
+struct RareLight {
+    float level = 0.0f, variance = 0.0f;
+
+    void add(const RareLight& other, float share) { level += other.level * share, variance += other.variance * share; }
+};
+
 /// The noise that a bake aims at, and the rays that it may take for it.
 struct NoiseGoal {
     float target = 0.0f; ///< relative standard error of a place; 0: every receiver gets the first rays alone
@@ -33,6 +40,7 @@ struct NoiseGoal {
     RayPlan most = {};   ///< per receiver
     bool gathers = true;
     NoiseModel model = {};
+    RareLight rare = {}; ///< of the whole scene, with the first rays
     /// Above 0 where time is short: a place may then have this times its relative standard error with one ray as its
     /// relative variance. So rays go as the standard errors of one, which makes the mean squared error the least that
     /// a number of rays can (Neyman 1934); one noise for all would give the few noisiest places most of them.
