@@ -197,12 +197,12 @@ TEST(SelfCheck, JudgesElementsInSixStatesAndTellsThePackage) {
     scene.commit();
     ajar_settings s = kit::settings(3, 1024);
     s.combinations = AJAR_COMBINATIONS_ALL;
-    s.check_points = 256;
+    s.check_points = 384;
     const kit::Bake bake(scene, s);
     const nlohmann::json report = nlohmann::json::parse(bake.report());
     const auto& check = report.at("self_check");
     EXPECT_TRUE(report.at("warnings").empty()) << report.at("warnings");
-    ASSERT_EQ(check.at("states").size(), 5u) << "at the start all is on";
+    ASSERT_EQ(check.at("states").size(), 6u) << "at the start all is on";
     double most = 0.0;
     for (const auto& state : check.at("states")) {
         const double off = std::abs(state.at("ratio").get<double>() - 1.0), error = state.at("ratio_error");

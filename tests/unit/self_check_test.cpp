@@ -54,7 +54,7 @@ TEST(SelfCheck, LightInADarkStateIsMeasuredByTheBrightestOne) {
     EXPECT_GT(compare_points(std::vector<CheckPoint>(100, {0.05f, 0.001f, 0.0f, 0.0f}), 0.01).excess(), 1.0);
 }
 
-TEST(SelfCheck, LooksAtTheStartAllOnAndFourStatesByChance) {
+TEST(SelfCheck, LooksAtTheStartTheEndsAndFourStatesByChance) {
     EXPECT_EQ(states_to_check({}, 0).size(), 1u);
     Element set, door;
     door.kind = ElementKind::door, door.weight = 0.0f;
@@ -66,7 +66,11 @@ TEST(SelfCheck, LooksAtTheStartAllOnAndFourStatesByChance) {
         for (const float w : states[i].weights) EXPECT_TRUE(w >= 0.0f && w <= 1.0f);
     EXPECT_NE(states[2].weights, states[3].weights);
     door.weight = 1.0f;
-    EXPECT_EQ(states_to_check({set, door}, 3).size(), 5u) << "the start is everything on";
+    const auto closing = states_to_check({set, door}, 3);
+    ASSERT_EQ(closing.size(), 6u) << "the start is everything on";
+    EXPECT_EQ(closing[1].weights, (std::vector<float>{1, 0})) << "all changed";
+    set.weight = 0.0f;
+    ASSERT_EQ(states_to_check({set}, 3).size(), 6u) << "nothing to change but the set";
     EXPECT_EQ(points_of_state(256, 1), 256u);
     EXPECT_EQ(points_of_state(256, 6), 42u);
 }

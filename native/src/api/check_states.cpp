@@ -15,11 +15,16 @@ constexpr int kRandomStates = 4;
 } // namespace
 
 std::vector<CheckedState> states_to_check(const std::vector<Element>& elements, uint64_t seed) {
-    CheckedState start{"start", {}}, all_on{"all on", std::vector<float>(elements.size(), 1.0f)};
-    for (const Element& e : elements) start.weights.push_back(e.weight);
+    CheckedState start{"start", {}}, all_on{"all on", std::vector<float>(elements.size(), 1.0f)},
+        all_changed{"all changed", {}};
+    for (const Element& e : elements) {
+        start.weights.push_back(e.weight);
+        all_changed.weights.push_back(e.is_switch() && e.weight >= 0.5f ? 0.0f : 1.0f);
+    }
     std::vector<CheckedState> out{start};
     if (elements.empty()) return out;
-    if (all_on.weights != start.weights) out.push_back(all_on);
+    for (const CheckedState& state : {all_on, all_changed})
+        if (state.weights != start.weights && state.weights != out.back().weights) out.push_back(state);
     Pcg random(seed, kStateStream);
     for (int i = 0; i < kRandomStates; ++i) {
         CheckedState state{"random " + std::to_string(i + 1), {}};

@@ -15,8 +15,9 @@ struct CheckedState {
     std::vector<float> weights; ///< per element
 };
 
-/// The start, everything on, and four by chance: light sets anywhere between off and on; doors and toggles at either
-/// end in two of them, anywhere between in the others. Without elements there is the start alone.
+/// The start, everything on, all light sets on with every door and toggle at the end that is far from its start, and
+/// four by chance: light sets anywhere between off and on; doors and toggles at either end in two of them, anywhere
+/// between in the others. None comes twice in a row. Without elements there is the start alone.
 std::vector<CheckedState> states_to_check(const std::vector<Element>& elements, uint64_t seed);
 
 /// Texels of each state, so that all states together look at as many as are wished for.
