@@ -113,7 +113,7 @@ private:
     Progress& progress_;
     double seconds_to_store_;
     bool in_background_ = false; ///< shows no progress of its own
-    uint32_t source_samples_ = kSourceSamples;
+    uint32_t source_samples_ = source_samples(settings_);
     double source_end_ = 0.0; ///< s, when find_source() was done
     BakeResult result_;
     NoiseGoal goal_;

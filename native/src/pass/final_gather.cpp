@@ -263,7 +263,7 @@ std::unique_ptr<Baker> Baker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<Baker>(s_, other_source_settings(settings_), pool_, progress_);
     other->in_background_ = true;
-    other->source_samples_ = other_source_samples(settings_);
+    other->source_samples_ = other_source_samples(settings_, source_samples_);
     other->first_ = first_, other->further_ = further_;
     other->find_source();
     return other;

@@ -47,8 +47,8 @@ double source_rays_ratio(const ajar_settings& settings) {
     return double(bounce_rays(settings)) / bounce_rays(other_source_settings(settings));
 }
 
-uint32_t other_source_samples(const ajar_settings& settings) {
-    return static_cast<uint32_t>(std::lround(kSourceSamples / source_rays_ratio(settings)));
+uint32_t other_source_samples(const ajar_settings& settings, uint32_t samples) {
+    return static_cast<uint32_t>(std::lround(samples / source_rays_ratio(settings)));
 }
 
 TwinCheck::TwinCheck(const LightmapReceivers& receivers, const BakeResult& result)

@@ -60,7 +60,8 @@ double seconds_left(const ajar_settings& settings, const Progress& progress, siz
 ajar_settings other_source_settings(ajar_settings settings);
 /// Bounce rays of a bake with these settings over those of its other source.
 double source_rays_ratio(const ajar_settings& settings);
-/// Emitter samples of the other source: fewer by the same ratio, so that all of its noise is larger by one factor.
-uint32_t other_source_samples(const ajar_settings& settings);
+/// Emitter samples of the other source of a bake with samples: fewer by the same ratio, so that all of its noise is
+/// larger by one factor.
+uint32_t other_source_samples(const ajar_settings& settings, uint32_t samples);
 
 } // namespace ajar
