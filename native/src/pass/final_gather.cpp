@@ -14,7 +14,10 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kPackets = kTileReceivers / kLanes;
-constexpr uint64_t kRaysInTheDark = 1 << 20;   ///< that look for light where none was met
+/// Looks for light, and rays of all of them but the first, where none was met: with one look at a floor of 32 x 32
+/// texels, 70 % of the sky through a hole of 5 cm in a ceiling of 3 m were lost, with these 6 +- 6 %.
+constexpr uint32_t kMostLooks = 64;
+constexpr uint64_t kRaysInTheDark = 1 << 20;
 constexpr size_t kPilotTiles = 2048;           ///< that the pilot looks at, of scenes with more than twice as many
 using Packets = std::array<uint8_t, kPackets>; ///< marks
 
@@ -68,15 +71,18 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
 /// Rare light in parts of tiles, with these rays.
 std::vector<RareLight> Baker::rare_light_of(const std::vector<Tile>& tiles, const RayPlan& rays, uint32_t seed) {
     std::vector<RareLight> parts(tiles.size() * kPilotParts);
-    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
-        DirectGroups groups = look_around(tiles[i], seed);
-        const Tile typical = split(s_.receivers, tiles[i]).typical();
-        for (uint32_t k = 0; k < kPilotParts; ++k) {
-            const Tile part = pilot_part(typical, k);
-            groups.start_at(part.first - tiles[i].first);
-            parts[i * kPilotParts + k] = rare_light(estimate(part, rays, groups, {}, seed, false), 0, part.count);
-        }
-    });
+    pool_.for_each(
+        tiles.size(), progress_,
+        [&](size_t i) {
+            DirectGroups groups = look_around(tiles[i], seed);
+            const Tile typical = split(s_.receivers, tiles[i]).typical();
+            for (uint32_t k = 0; k < kPilotParts; ++k) {
+                const Tile part = pilot_part(typical, k);
+                groups.start_at(part.first - tiles[i].first);
+                parts[i * kPilotParts + k] = rare_light(estimate(part, rays, groups, {}, seed, false), 0, part.count);
+            }
+        },
+        false);
     return parts;
 }
 
@@ -84,7 +90,8 @@ std::vector<RareLight> Baker::rare_light_of(const std::vector<Tile>& tiles, cons
 RareLight Baker::look_for_rare_light(const std::vector<Tile>& tiles, const RayPlan& rays) {
     const uint64_t enough = progress_.rays() + kRaysInTheDark;
     RareLight found;
-    for (uint32_t look = 0; look == 0 || (!(found.level > 0.0f) && progress_.rays() < enough); ++look) {
+    for (uint32_t look = 0; look < kMostLooks && !(found.level > 0.0f); ++look) {
+        if (look > 0 && progress_.rays() >= enough) break;
         const uint32_t seed = hash_combine(hash_combine(settings_.seed, kSaltRareLight), look);
         found = mean_of(rare_light_of(tiles, rays, seed), rays.gather, first_.gather);
     }
