@@ -61,11 +61,11 @@ inline constexpr double kAimedBounce = 0.1;
 /// Rays per receiver of a bounce: blocks of four receivers share theirs.
 inline uint32_t bounce_rays(const ajar_settings& settings) { return std::max(settings.bounce_samples / 4, 4u); }
 
-/// Emitter samples per receiver that feed the bounces, at least.
+/// Emitter samples per receiver that feed the bounces, of a light set.
 inline constexpr uint32_t kSourceSamples = 16;
-/// The same in scenes without elements: as many as a bounce has rays, so that both get less noisy together. The sun
-/// through a window of 40 cm, a spot of 1.6 texels, left 5 % of noise in all light that it throws around the room with
-/// 16, whatever the preset; with the 256 of Production .9 %, for 1 % of the time.
+/// Of the emitters of none: as many as a bounce has rays, so that both get less noisy together. With 16 the sun through
+/// a window of 40 cm, a spot of 1.6 texels, left 5 % of noise in all light that it throws around the room, whatever the
+/// preset; with the 256 of Production .9 %, for 1 % of the time.
 inline uint32_t source_samples(const ajar_settings& settings) {
     return std::max(bounce_rays(settings), kSourceSamples);
 }

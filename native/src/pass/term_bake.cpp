@@ -194,6 +194,7 @@ void TermBaker::direct_source() {
             DirectGroups groups(s_.emitters, LightRoles::all, first_ != nullptr ? first_->sets_of(tile) : all_sets_);
             uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
+            groups.allot_base(base_samples_);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;
             for (bool again = true; again;) {
                 TermSums direct(table_), gather(table_);

@@ -202,6 +202,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
     other->first_ = this;
     other->source_samples_ = other_source_samples(settings_, source_samples_);
+    other->base_samples_ = other_source_samples(settings_, base_samples_);
     other->doors_ = doors_;
     try {
         other->find_source();

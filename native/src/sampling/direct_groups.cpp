@@ -58,6 +58,13 @@ void DirectGroups::allot(uint32_t samples, uint32_t unseen_samples) {
     }
 }
 
+void DirectGroups::allot_base(uint32_t samples) {
+    Group& base = groups_.front();
+    if (base.samples == 0) return;
+    base.samples = samples;
+    base.of.fill(samples);
+}
+
 float DirectGroups::expected(uint32_t local, uint32_t emitter) const {
     if (group_of_[emitter] == EmitterSet::kNone) return 0.0f;
     const Group& g = groups_[group_of_[emitter]];

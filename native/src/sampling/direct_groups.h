@@ -37,6 +37,8 @@ public:
 
     /// Other counts of samples for the tile as begin() found it.
     void allot(uint32_t samples, uint32_t unseen_samples);
+    /// Another count of samples for the emitters of no light set.
+    void allot_base(uint32_t samples);
     /// From now on receivers count from this one of the tile on, the first of a packet.
     void start_at(uint32_t local);
 
