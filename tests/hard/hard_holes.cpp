@@ -14,7 +14,7 @@ constexpr uint32_t kSeeds = 2;
 /// What else there is in a room.
 enum class Beside { kNothing, kLamp, kDarkSet };
 
-/// A black room under a sky of radiance 1, with a square hole in its ceiling: mean of its floor.
+/// A black room under a sky of radiance 1, with a square hole in its ceiling: how far the mean of its floor is off.
 double hole(const Variant& v, float edge, Beside beside) {
     Stage s(v);
     const uint32_t page = s.object(kit::plane(kEdge, 0.0f), s.black(), kTexels);

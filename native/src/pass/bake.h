@@ -82,7 +82,8 @@ private:
     void plan_rays();
     NoiseTrial try_noise(const Tile& part, const MeasuredNoise& few, const RayPlan& rays, DirectGroups& groups,
                          uint32_t seed);
-    std::vector<RareLight> rare_light_of(const std::vector<Tile>& tiles, const RayPlan& rays, uint32_t seed);
+    template <class Visit>
+    void visit_parts(const std::vector<Tile>& tiles, uint32_t seed, bool shows_progress, Visit&& visit);
     RareLight look_for_rare_light(const std::vector<Tile>& tiles, const RayPlan& rays);
     DirectGroups look_around(const Tile& tile, uint32_t seed);
     TileEstimate estimate(const Tile& tile, RayPlan plan, DirectGroups& groups, PacketChoice packets, uint32_t seed,

@@ -14,8 +14,9 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t kPackets = kTileReceivers / kLanes;
-/// Looks for light, and rays of all of them but the first, where none was met: with one look at a floor of 32 x 32
-/// texels, 70 % of the sky through a hole of 5 cm in a ceiling of 3 m were lost, with these 6 +- 6 %.
+/// Where no ray met light the pilot looks again, so often at most and while all looks together took fewer rays: with
+/// one look at a floor of 32 x 32 texels, 70 % of the sky through a hole of 5 cm, 3 m above it, were lost, with these
+/// 6 +- 6 %.
 constexpr uint32_t kMostLooks = 64;
 constexpr uint64_t kRaysInTheDark = 1 << 20;
 constexpr size_t kPilotTiles = 2048;           ///< that the pilot looks at, of scenes with more than twice as many
@@ -68,9 +69,9 @@ NoiseTrial Baker::try_noise(const Tile& part, const MeasuredNoise& few, const Ra
     return trial;
 }
 
-/// Rare light in parts of tiles, with these rays.
-std::vector<RareLight> Baker::rare_light_of(const std::vector<Tile>& tiles, const RayPlan& rays, uint32_t seed) {
-    std::vector<RareLight> parts(tiles.size() * kPilotParts);
+/// Calls visit(index, part, groups) for the pilot's parts of tiles; groups: the emitters of the part's tile.
+template <class Visit>
+void Baker::visit_parts(const std::vector<Tile>& tiles, uint32_t seed, bool shows_progress, Visit&& visit) {
     pool_.for_each(
         tiles.size(), progress_,
         [&](size_t i) {
@@ -79,21 +80,24 @@ std::vector<RareLight> Baker::rare_light_of(const std::vector<Tile>& tiles, cons
             for (uint32_t k = 0; k < kPilotParts; ++k) {
                 const Tile part = pilot_part(typical, k);
                 groups.start_at(part.first - tiles[i].first);
-                parts[i * kPilotParts + k] = rare_light(estimate(part, rays, groups, {}, seed, false), 0, part.count);
+                visit(i * kPilotParts + k, part, groups);
             }
         },
-        false);
-    return parts;
+        shows_progress);
 }
 
 /// The scene's rare light, found with more rays than the pilot's, and again where they met none.
 RareLight Baker::look_for_rare_light(const std::vector<Tile>& tiles, const RayPlan& rays) {
     const uint64_t enough = progress_.rays() + kRaysInTheDark;
+    std::vector<RareLight> parts(tiles.size() * kPilotParts);
     RareLight found;
     for (uint32_t look = 0; look < kMostLooks && !(found.level > 0.0f); ++look) {
         if (look > 0 && progress_.rays() >= enough) break;
         const uint32_t seed = hash_combine(hash_combine(settings_.seed, kSaltRareLight), look);
-        found = mean_of(rare_light_of(tiles, rays, seed), rays.gather, first_.gather);
+        visit_parts(tiles, seed, false, [&](size_t i, const Tile& part, DirectGroups& groups) {
+            parts[i] = rare_light(estimate(part, rays, groups, {}, seed, false), 0, part.count);
+        });
+        found = mean_rare_light(parts, rays.gather, first_.gather);
     }
     return found;
 }
@@ -118,23 +122,17 @@ void Baker::plan_rays() {
     const double start = progress_.elapsed();
     const RayPlan small = pilot_rays(goal_.most, goal_.gathers), large = trial_rays(goal_.most, goal_.gathers);
     std::vector<NoiseTrial> trials((tiles.size() + kTrialStep - 1) / kTrialStep);
-    pool_.for_each(tiles.size(), progress_, [&](size_t i) {
-        const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
-        DirectGroups groups = look_around(tiles[i], seed);
-        const Tile typical = split(s_.receivers, tiles[i]).typical();
-        for (uint32_t k = 0; k < kPilotParts; ++k) {
-            const Tile part = pilot_part(typical, k);
-            groups.start_at(part.first - tiles[i].first);
-            const TileEstimate few = estimate(part, small, groups, {}, seed, false);
-            pilot[i * kPilotParts + k] = mean_noise(few, 0, part.count);
-            rare[i * kPilotParts + k] = rare_light(few, 0, part.count);
-            if (is_trial(i, k))
-                trials[i / kTrialStep] = try_noise(part, pilot[i * kPilotParts + k], large, groups, seed);
-        }
+    const uint32_t seed = hash_combine(settings_.seed, kSaltPilot);
+    visit_parts(tiles, seed, true, [&](size_t i, const Tile& part, DirectGroups& groups) {
+        const TileEstimate few = estimate(part, small, groups, {}, seed, false);
+        pilot[i] = mean_noise(few, 0, part.count);
+        rare[i] = rare_light(few, 0, part.count);
+        const size_t tile = i / kPilotParts;
+        if (is_trial(tile, i % kPilotParts)) trials[tile / kTrialStep] = try_noise(part, pilot[i], large, groups, seed);
     });
     goal_.model = fit_noise_model(trials, small, large);
     goal_.dark = dark_level(pilot);
-    goal_.rare = mean_of(rare, small.gather, first_.gather);
+    goal_.rare = mean_rare_light(rare, small.gather, first_.gather);
     // The few hits that are most of the light tell little of it.
     if (goal_.gathers && !(mean_level(pilot) > 2.0f * goal_.rare.level)) goal_.rare = look_for_rare_light(tiles, large);
     if (!timed) return;

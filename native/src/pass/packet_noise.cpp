@@ -60,10 +60,10 @@ RareLight rare_light(const TileEstimate& t, uint32_t first, uint32_t end) {
             static_cast<float>(t.gather_variance(most) - next) * share};
 }
 
-RareLight mean_of(const std::vector<RareLight>& parts, uint32_t measured_rays, uint32_t rays) {
+RareLight mean_rare_light(const std::vector<RareLight>& parts, uint32_t measured_rays, uint32_t rays) {
     RareLight mean;
     for (const RareLight& r : parts) mean.add(r, 1.0f / static_cast<float>(parts.size()));
-    // Hits that are few do not know of strata.
+    // Few hits are independent: strata do not help.
     mean.variance *= static_cast<float>(measured_rays) / static_cast<float>(std::max(rays, 1u));
     return mean;
 }

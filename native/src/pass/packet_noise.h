@@ -12,8 +12,8 @@ MeasuredNoise mean_noise(const TileEstimate& t, uint32_t first, uint32_t end);
 /// What one receiver of a packet, first to end, has more than the others.
 RareLight rare_light(const TileEstimate& t, uint32_t first, uint32_t end);
 
-/// Rare light of a scene with some rays per receiver, by parts of it that were measured with others.
-RareLight mean_of(const std::vector<RareLight>& parts, uint32_t measured_rays, uint32_t rays);
+/// Mean rare light of a scene's parts: measured with some rays per receiver, its variance given for others.
+RareLight mean_rare_light(const std::vector<RareLight>& parts, uint32_t measured_rays, uint32_t rays);
 
 /// Mean level of some parts of a scene.
 float mean_level(const std::vector<MeasuredNoise>& parts);

@@ -192,7 +192,7 @@ void TermBaker::direct_source() {
             if (tile.count == 0) return;
             const uint32_t seed = hash_combine(settings_.seed, kSaltSource);
             DirectGroups groups(s_.emitters, LightRoles::all, first_ != nullptr ? first_->sets_of(tile) : all_sets_);
-            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, source_samples_, kUnseenSamples,
+            uint64_t rays = groups.begin(s_.tracer, s_.receivers, tile, set_samples_, kUnseenSamples,
                                          hash_combine(seed, s_.receivers.texel[tile.first]));
             groups.allot_base(base_samples_);
             const uint32_t gather_rays = rays_needed ? bounce_rays(settings_) : 0;

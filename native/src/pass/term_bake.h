@@ -98,7 +98,7 @@ private:
     /// Whose source this second one repeats for all light sets together, without progress of its own, to tell its
     /// noise; null: this is the first.
     const TermBaker* first_ = nullptr;
-    uint32_t source_samples_ = kSourceSamples;          ///< of a light set
+    uint32_t set_samples_ = kSourceSamples;             ///< of a light set
     uint32_t base_samples_ = source_samples(settings_); ///< of emitters of none
     double source_end_ = 0.0;                           ///< s, when find_source() was done
     std::vector<uint32_t> order_;                       ///< [tiles] most elements of a term there

@@ -201,7 +201,7 @@ std::unique_ptr<TermBaker> TermBaker::other_source() {
     if (settings_.bounces == 0) return nullptr;
     auto other = std::make_unique<TermBaker>(s_, other_source_settings(settings_), pool_, progress_);
     other->first_ = this;
-    other->source_samples_ = other_source_samples(settings_, source_samples_);
+    other->set_samples_ = other_source_samples(settings_, set_samples_);
     other->base_samples_ = other_source_samples(settings_, base_samples_);
     other->doors_ = doors_;
     try {
